@@ -1,0 +1,166 @@
+"""Unilateral contact with a rigid surface, wear as a compliance included."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.geometry.body import Body
+from ngwear.surfaces import RigidSurface
+
+Array = NDArray[np.float64]
+
+
+class Contact(Term):
+    """Contact pressure as an unknown on named edges: ``0 <= P  _|_  g(X + u) + kappa P / (da/dA) >= 0``.
+
+    P is the nominal (first Piola) pressure, discontinuous and linear on each mesh edge; g the signed
+    distance from the surface. ``kappa = k ds`` is the implicit Archard step of a specific wear rate k
+    [mm²/N] over a sliding distance ds [mm]: the depth kappa P is worn per reference area while the gap
+    closes by kappa p with the Cauchy pressure p = P / (da/dA). The stretch da/dA in the gap is that of
+    the state from which the solve starts; the depth itself is exact.
+
+    The energy is the augmented Lagrangian ``1/(2c) [ max(0, P - c g)^2 / (1 + c kappa) - P^2 ]`` (Alart &
+    Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, with the compliance added): symmetric, exact
+    for every c > 0, and semismooth under Newton.
+
+    A surface may move along its ``approach`` by the load ``"NAME approach [mm]"``; under force control
+    (``force_controlled=True``) that displacement is an unknown and the load is ``"NAME force [N]"`` (N per
+    mm of thickness in plane strain).
+
+    Parameters
+    ----------
+    name : str
+    edges : sequence of str
+        Names of the edges that may touch.
+    surface : RigidSurface
+    force_controlled : bool
+    modulus : float
+        Shear modulus G of the body [MPa]. It sets the scales of the method, not of the solution:
+        c = 13 G / mm, and a compliance of 1e-7 mm / G (1e-7 mm of closure at P = G) that keeps the
+        pivots of the factorisation away from zero.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        edges: Sequence[str],
+        surface: RigidSurface,
+        *,
+        force_controlled: bool = False,
+        modulus: float,
+    ) -> None:
+        super().__init__()
+        self.name, self.edges, self.surface = name, tuple(edges), surface
+        self.force_controlled = force_controlled
+        self.default_augmentation = 13.0 * modulus
+        self.augmentation = ng.Parameter(self.default_augmentation)
+        self.floor = 1e-7 / modulus
+        self.compliance = ng.Parameter(0.0)
+        self.load = ng.Parameter(0.0)
+        kind = "force [N]" if force_controlled else "approach [mm]"
+        self.loads = {f"{name} {kind}": self.load}
+
+    @property
+    def pressure_name(self) -> str:
+        """Name of the nominal pressure among the unknowns."""
+        return f"{self.name} pressure"
+
+    @property
+    def travel_name(self) -> str:
+        """Name of the surface's displacement among the unknowns, under force control."""
+        return f"{self.name} approach"
+
+    def spaces(self, body: Body) -> dict[str, ng.FESpace]:
+        region = body.boundary(self.edges)
+        spaces: dict[str, ng.FESpace] = {
+            self.pressure_name: ng.Compress(ng.SurfaceL2(body.mesh, order=1, definedon=region))
+        }
+        if self.force_controlled:
+            spaces[self.travel_name] = ng.NumberSpace(body.mesh)
+        return spaces
+
+    def place(self, fields: dict[str, Any]) -> tuple[Any, Any]:
+        """Coordinates of X + u in the frame of the moving surface, for trial functions or a state."""
+        u = fields[DISPLACEMENT]
+        travel = fields[self.travel_name] if self.force_controlled else self.load
+        ax, ay = self.surface.approach
+        return ng.x + u[0] - travel * ax, ng.y + u[1] - travel * ay
+
+    def gap(self, fields: dict[str, Any]) -> Any:
+        """Signed distance of the deformed outline from the surface [mm]."""
+        return self.surface.gap(*self.place(fields))
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        region = unknowns.body.boundary(self.edges)
+        kinematics = unknowns.kinematics
+        self._mesh, self._region = unknowns.body.mesh, region
+        self._start = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
+        stretch = kinematics.area_stretch(self._start, ng.Grad(self._start))
+        p, c = unknowns.trial[self.pressure_name], self.augmentation
+        pushed = p - c * self.gap(unknowns.trial)
+        closure = 1 + c * (self.floor + self.compliance / stretch)
+        active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
+        energy = (active - p * p) / (2 * c) * kinematics.weight
+        form += ng.Variation(energy.Compile() * ng.ds(definedon=region, bonus_intorder=2))
+        if self.force_controlled:
+            # A constant energy density over the outline adds up to - force * travel.
+            everywhere = unknowns.body.mesh.Boundaries(".*")
+            travel = unknowns.trial[self.travel_name]
+            length = float(unknowns.body.contour.lengths.sum())
+            form += ng.Variation(-self.load * travel / length * ng.ds(definedon=everywhere))
+
+        self._state, self._kinematics = unknowns.state, kinematics
+        self._lay_samples(unknowns.body, region)
+
+    def _lay_samples(self, body: Body, region: ng.Region) -> None:
+        """Mapped points at both ends of each mesh edge in contact, in the order of the outline."""
+        line = body.outline
+        self.positions = line.on(self.edges)
+        rule = ng.IntegrationRule([(0.0,), (1.0,)], [0.5, 0.5])
+        points = body.mesh.MapToAllElements(rule, region)
+        row = {int(nr): k for k, nr in enumerate(points["nr"][::2])}
+        rows = np.array([row[int(nr)] for nr in line.element[self.positions]])
+        points = points.reshape(-1, 2)[rows]
+        place = np.stack([ng.x(points.ravel()), ng.y(points.ravel())], axis=-1).reshape(-1, 2, 2)
+        start = body.contour.at(line.t[self.positions, 0])
+        turned = np.linalg.norm(place[:, 0] - start, axis=1) > np.linalg.norm(place[:, 1] - start, axis=1)
+        points[turned] = points[turned][:, ::-1]
+        self._points = np.ascontiguousarray(points.ravel())
+
+    def _sample(self, field: ng.CoefficientFunction) -> Array:
+        return np.asarray(field(self._points)).reshape(-1, 2)
+
+    def end_pressures(self) -> Array:
+        """Nominal pressure at the ends of each mesh edge, in the order of the outline; shape (m, 2) [MPa]."""
+        return self._sample(self._state[self.pressure_name])
+
+    def end_stretches(self) -> Array:
+        """da/dA at the ends of each mesh edge; shape (m, 2) [-]."""
+        u = self._state[DISPLACEMENT]
+        return self._sample(self._kinematics.area_stretch(u, ng.Grad(u)))
+
+    def end_places(self) -> Array:
+        """Deformed coordinates of the ends of each mesh edge; shape (m, 2, 2) [mm]."""
+        u = self._state[DISPLACEMENT]
+        return np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1)
+
+    def end_gaps(self) -> Array:
+        """Gap at the ends of each mesh edge; shape (m, 2) [mm]."""
+        return self._sample(self.gap(self._state))
+
+    def force(self) -> Array:
+        """Resultant of the contact pressure on the rubber; shape (2,) [N], or N/mm in plane strain."""
+        p = self._state[self.pressure_name]
+        nx, ny = self.surface.normal(*self.place(self._state))
+        measure = ng.ds(definedon=self._region, bonus_intorder=2)
+        weight = self._kinematics.weight
+        return np.array([ng.Integrate(p * n * weight * measure, self._mesh) for n in (nx, ny)])
+
+    def prepare(self) -> None:
+        self._start.vec.data = self._state[DISPLACEMENT].vec

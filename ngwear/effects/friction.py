@@ -1,0 +1,49 @@
+"""Full sliding friction: the cheap term for strokes much longer than the elastic slip."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+
+from ngwear.effects.base import Term, Unknowns
+from ngwear.effects.contact import Contact
+from ngwear.errors import SceneError
+
+
+class FullSliding(Term):
+    """Traction ``mu P`` along the surface's motion everywhere in contact (Coulomb, no stick zone).
+
+    The load ``"NAME slip"`` in [-1, 1] is the direction in which the surface moves along its tangent (the
+    surface's normal turned clockwise); values between ramp a reversal. Neglects the stick phase after a
+    reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric.
+
+    Parameters
+    ----------
+    contact : Contact
+    coefficient : float
+        mu [-], >= 0.
+
+    Raises
+    ------
+    SceneError
+        For a negative coefficient.
+    """
+
+    symmetric = False
+
+    def __init__(self, contact: Contact, coefficient: float) -> None:
+        super().__init__()
+        if coefficient < 0:
+            raise SceneError(f"contact {contact.name}.friction", coefficient, "must be at least 0")
+        self.contact, self.coefficient = contact, coefficient
+        self.slip = ng.Parameter(1.0)
+        self.loads = {f"{contact.name} slip": self.slip}
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        contact = self.contact
+        p = unknowns.trial[contact.pressure_name]
+        tx, ty = contact.surface.tangent(*contact.place(unknowns.trial))
+        v = unknowns.v
+        traction = self.coefficient * self.slip * p * unknowns.kinematics.weight
+        work = -traction * (tx * v[0] + ty * v[1])
+        region = unknowns.body.boundary(contact.edges)
+        form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)

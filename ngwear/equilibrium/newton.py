@@ -1,0 +1,130 @@
+"""Newton's method that says why it stopped."""
+
+from __future__ import annotations
+
+import enum
+import math
+from dataclasses import dataclass, field
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.contact import Contact
+from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE
+from ngwear.equilibrium.problem import Problem
+
+
+class Outcome(enum.Enum):
+    """How a solve ended, as advice."""
+
+    CONVERGED = "converged"
+    TOO_MANY_ITERATIONS = "no convergence: take smaller load steps"
+    FOLDED = "an element would turn inside out: take smaller load steps or refine there"
+    SINGULAR = "the tangent is singular: is the body held, and does every force-controlled surface touch it?"
+    DIVERGED = "the corrections grow: take smaller load steps"
+
+
+@dataclass(frozen=True)
+class NewtonOptions:
+    """When to stop.
+
+    Parameters
+    ----------
+    tolerance : float
+        Largest accepted last displacement correction over the section's size [-]. Newton converges
+        quadratically: the error left is far smaller.
+    max_iterations : int
+    first_augmentation : float or None
+        Contact augmentation c [MPa/mm] of the first iteration; large: trust the gap, not the pressure,
+        after a move to another mesh.
+    """
+
+    tolerance: float = 1e-7
+    max_iterations: int = 25
+    first_augmentation: float | None = None
+
+
+@dataclass
+class Report:
+    """What a solve did."""
+
+    outcome: Outcome
+    iterations: int = 0
+    corrections: list[float] = field(default_factory=list)
+    residual: float = math.nan
+    linear_residual: float = 0.0
+
+    @property
+    def converged(self) -> bool:
+        """Whether the state is an equilibrium."""
+        return self.outcome is Outcome.CONVERGED
+
+    def __str__(self) -> str:
+        steps = " ".join(f"{c:.1e}" for c in self.corrections[-8:])
+        return f"{self.outcome.value} (iterations {self.iterations}; last displacement corrections [mm] {steps})"
+
+
+def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
+    """Bring the problem's state to equilibrium under its present loads.
+
+    On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
+    somewhere) are refused and the correction is halved, at most four times.
+    """
+    options = options or NewtonOptions()
+    for term in problem.terms:
+        term.prepare()
+    start = problem.state.vec.CreateVector()
+    start.data = problem.state.vec
+    with problem.threads():
+        report = _iterate(problem, options)
+    if not report.converged:
+        problem.state.vec.data = start
+    return report
+
+
+def _iterate(problem: Problem, options: NewtonOptions) -> Report:
+    contacts = [term for term in problem.terms if isinstance(term, Contact)]
+    size = float(np.ptp(problem.body.contour.points, axis=0).max())
+    u = problem.part(DISPLACEMENT)
+    vector = problem.state.vec
+    residual, correction, trial = (vector.CreateVector() for _ in range(3))
+    report = Report(Outcome.TOO_MANY_ITERATIONS)
+    if options.first_augmentation is not None:
+        for contact in contacts:
+            contact.augmentation.Set(options.first_augmentation)
+    problem.residual(residual)
+    for report.iterations in range(1, options.max_iterations + 1):
+        solver = problem.tangent()
+        if solver is None:
+            report.outcome = Outcome.SINGULAR
+            break
+        report.linear_residual = max(report.linear_residual, solver.solve(residual, correction))
+        if not report.linear_residual < RESIDUAL_TOLERANCE:
+            report.outcome = Outcome.SINGULAR
+            break
+        if report.iterations == 1 and options.first_augmentation is not None:
+            for contact in contacts:
+                contact.augmentation.Set(contact.default_augmentation)
+        step, trial.data = 1.0, vector
+        for _ in range(5):
+            vector.data = trial - step * correction
+            problem.residual(residual)
+            report.residual = float(ng.Norm(residual))
+            if math.isfinite(report.residual):
+                break
+            step /= 2
+        else:
+            report.outcome = Outcome.FOLDED
+            break
+        change = step * float(np.abs(correction.FV().NumPy()[u]).max())
+        report.corrections.append(change)
+        if step == 1.0 and change <= options.tolerance * size:
+            report.outcome = Outcome.CONVERGED
+            break
+        if change > 5 * size:
+            report.outcome = Outcome.DIVERGED
+            break
+    for contact in contacts:
+        contact.augmentation.Set(contact.default_augmentation)
+    return report

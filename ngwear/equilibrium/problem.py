@@ -1,0 +1,133 @@
+"""The effects' terms summed into one nonlinear problem on one body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from typing import Any
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.equilibrium.linear import DirectSolver
+from ngwear.errors import SceneError
+from ngwear.fields.kinematics import Kinematics
+from ngwear.geometry.body import Body
+
+Array = NDArray[np.float64]
+THREADED_FROM = 12_000  # unknowns; below, waking the second core costs more than it brings
+
+Loads = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Support:
+    """Edges whose displacement is prevented in some directions.
+
+    Parameters
+    ----------
+    edges : tuple of str
+    x, y : bool
+        Whether the component is held at zero.
+    """
+
+    edges: tuple[str, ...]
+    x: bool = True
+    y: bool = True
+
+
+class Problem:
+    """Find the stationary point of the terms' energies and forms.
+
+    Parameters
+    ----------
+    body : Body
+    kinematics : Kinematics
+    terms : sequence of Term
+        Only what is listed exists: no unknown, memory or zero term of anything else.
+    supports : sequence of Support
+    order : int
+        Polynomial order of the displacement.
+    """
+
+    def __init__(
+        self,
+        body: Body,
+        kinematics: Kinematics,
+        terms: Sequence[Term],
+        *,
+        supports: Sequence[Support] = (),
+        order: int = 2,
+    ) -> None:
+        self.body, self.kinematics, self.terms = body, kinematics, tuple(terms)
+        held = {axis: "|".join(e for s in supports if getattr(s, axis) for e in s.edges) for axis in "xy"}
+        for support in supports:
+            body.boundary(support.edges)
+        flags = {f"dirichlet{axis}": names for axis, names in held.items() if names}
+        spaces: dict[str, ng.FESpace] = {DISPLACEMENT: ng.VectorH1(body.mesh, order=order, **flags)}
+        for term in self.terms:
+            spaces |= term.spaces(body)
+        self.names = tuple(spaces)
+        self.space = ng.FESpace(list(spaces.values()))
+        self.state = ng.GridFunction(self.space)
+        self.fields = dict(zip(self.names, self.state.components, strict=True))
+        self.form = ng.BilinearForm(self.space, check_unused=False)
+        unknowns = Unknowns(
+            body=body,
+            kinematics=kinematics,
+            trial=dict(zip(self.names, self.space.TrialFunction(), strict=True)),
+            test=dict(zip(self.names, self.space.TestFunction(), strict=True)),
+            state=self.fields,
+        )
+        for term in self.terms:
+            term.add_to(self.form, unknowns)
+        self.symmetric = all(term.symmetric for term in self.terms)
+        self.parameters: dict[str, ng.Parameter] = {}
+        for term in self.terms:
+            self.parameters |= term.loads
+        self._solver: DirectSolver | None = None
+
+    @property
+    def free(self) -> ng.BitArray:
+        """Unknowns that are not prescribed."""
+        return self.space.FreeDofs()
+
+    def part(self, name: str) -> slice:
+        """Return where the named unknown stands in the state vector."""
+        where = self.space.Range(self.names.index(name))
+        return slice(where.start, where.stop)
+
+    def set_loads(self, loads: Loads) -> None:
+        """Set the terms' loads; SceneError names a load that no term has."""
+        for name, value in loads.items():
+            if name not in self.parameters:
+                raise SceneError(
+                    "program", name, f"no effect of the scene takes this load; known: {sorted(self.parameters)}"
+                )
+            self.parameters[name].Set(value)
+
+    def get_loads(self) -> dict[str, float]:
+        """The loads as they are."""
+        return {name: parameter.Get() for name, parameter in self.parameters.items()}
+
+    def threads(self) -> Any:
+        """Context in which NGSolve uses both cores if the problem is large enough to gain by it."""
+        return ng.TaskManager() if self.space.ndof >= THREADED_FROM else nullcontext()
+
+    def residual(self, out: ng.BaseVector) -> None:
+        """Write the residual at the present state, zero on prescribed unknowns."""
+        self.form.Apply(self.state.vec, out)
+        out.data = ng.Projector(self.free, True) * out
+
+    def tangent(self) -> DirectSolver | None:
+        """Assemble and factorise the tangent at the present state; None if it is singular or not finite."""
+        try:
+            self.form.AssembleLinearization(self.state.vec)
+        except ng.NgException:
+            return None
+        if self._solver is None:
+            self._solver = DirectSolver(self.form.mat, self.free, symmetric=self.symmetric)
+        return self._solver if self._solver.factorise() else None

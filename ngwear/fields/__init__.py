@@ -1,0 +1,1 @@
+"""Kinematics of the section, and the move of fields to another mesh."""

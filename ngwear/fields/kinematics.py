@@ -1,0 +1,76 @@
+"""Plane strain and axisymmetry: how a displacement of the section becomes strain, area and volume."""
+
+from __future__ import annotations
+
+import abc
+import math
+from typing import Any
+
+import ngsolve as ng
+
+
+class Kinematics(abc.ABC):
+    """Strain measures of a section with displacement u = (u_x, u_y) and hoop stretch.
+
+    All quantities are per reference measure; integrals over the section or its outline carry ``weight``:
+    1 for plane strain (per mm of thickness), 2 pi R for axisymmetry.
+    """
+
+    axisymmetric: bool
+
+    @property
+    @abc.abstractmethod
+    def weight(self) -> Any:
+        """Reference thickness: 1 [-], or the circumference 2 pi R [mm]."""
+
+    @abc.abstractmethod
+    def hoop_stretch(self, u: Any) -> Any:
+        """Stretch out of the section's plane: 1, or 1 + u_r / R."""
+
+    def invariants(self, u: Any, grad_u: Any) -> tuple[Any, Any, Any]:
+        """Return I1 and I2 of C = F^T F and J = det F for the gradient ``grad_u`` (2 x 2) of u."""
+        plane = ng.Id(2) + grad_u
+        hoop = self.hoop_stretch(u)
+        c = plane.trans * plane
+        trace, det = ng.Trace(c), ng.Det(c)
+        return trace + hoop * hoop, det + hoop * hoop * trace, ng.Det(plane) * hoop
+
+    def area_vector(self, u: Any, trace_grad_u: Any) -> Any:
+        """Spatial outward normal times da/dA on the outline (Nanson), shape (2,).
+
+        ``trace_grad_u`` is the tangential gradient of u there.
+        """
+        n = ng.specialcf.normal(2)
+        along = ng.CF((-n[1], n[0]))
+        pushed = along + trace_grad_u * along
+        return self.hoop_stretch(u) * ng.CF((pushed[1], -pushed[0]))
+
+    def area_stretch(self, u: Any, trace_grad_u: Any) -> Any:
+        """da/dA on the outline [-]."""
+        return ng.Norm(self.area_vector(u, trace_grad_u))
+
+
+class PlaneStrain(Kinematics):
+    """No strain out of the plane; forces are per mm of thickness."""
+
+    axisymmetric = False
+
+    @property
+    def weight(self) -> Any:
+        return ng.CF(1.0)
+
+    def hoop_stretch(self, u: Any) -> Any:
+        return ng.CF(1.0)
+
+
+class Axisymmetric(Kinematics):
+    """Rotation about the x axis: x is axial, y is the radius R; no torsion."""
+
+    axisymmetric = True
+
+    @property
+    def weight(self) -> Any:
+        return 2 * math.pi * ng.y
+
+    def hoop_stretch(self, u: Any) -> Any:
+        return 1 + u[1] / ng.y

@@ -1,0 +1,63 @@
+"""Move fields of the reference section to another mesh of (almost) the same section."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+Array = NDArray[np.float64]
+
+
+class PointSearch:
+    """Find reference points in a mesh that may be deformed; points outside take the nearest inside.
+
+    Parameters
+    ----------
+    mesh : ng.Mesh
+    deformation : GridFunction
+        Displacement from the mesh as built to the present section [mm].
+    points : array, shape (n, 2)
+        Points of the present section.
+    """
+
+    def __init__(self, mesh: ng.Mesh, deformation: ng.GridFunction, points: Array) -> None:
+        active = mesh.deformation
+        mesh.UnsetDeformation()
+        place = np.array(points, dtype=float)
+        for _ in range(3):
+            self.mapped = _inside(mesh, place)
+            moved = np.asarray(deformation(self.mapped))
+            place = points - moved
+        self.mapped = _inside(mesh, place)
+        if active is not None:
+            mesh.SetDeformation(active)
+
+    def __call__(self, field: ng.CoefficientFunction) -> Array:
+        """Values of a field at the points; shape (n,) or (n, m)."""
+        return np.asarray(field(self.mapped)).reshape(len(self.mapped), -1)
+
+
+def _inside(mesh: ng.Mesh, points: Array) -> NDArray:
+    mapped = mesh(points[:, 0], points[:, 1])
+    lost = np.flatnonzero(mapped["nr"] < 0)
+    if len(lost) == 0:
+        return mapped
+    centres = _centres(mesh)
+    _, nearest = cKDTree(centres).query(points[lost])
+    for pull in (1e-4, 1e-3, 1e-2, 0.05, 0.2, 0.5, 1.0):
+        trial = points[lost] + pull * (centres[nearest] - points[lost])
+        found = mesh(trial[:, 0], trial[:, 1])
+        hit = found["nr"] >= 0
+        mapped[lost[hit]] = found[hit]
+        lost, nearest = lost[~hit], nearest[~hit]
+        if len(lost) == 0:
+            break
+    return mapped
+
+
+def _centres(mesh: ng.Mesh) -> Array:
+    coordinates = np.array(mesh.ngmesh.Coordinates()[:, :2])
+    triangles = mesh.ngmesh.Elements2D().NumPy()["nodes"][:, :3].astype(int) - 1
+    return coordinates[triangles].mean(axis=1)

@@ -1,0 +1,1 @@
+"""Outlines of named splines, their recession, and the meshes made from them."""

@@ -1,0 +1,197 @@
+"""A body: its outline, the mesh made from it, and the map between the two."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ngwear.errors import MeshError
+from ngwear.geometry import nodal, section
+from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
+
+
+@dataclass(frozen=True)
+class Outline:
+    """The mesh's boundary edges in the order of the outline (counter-clockwise).
+
+    Attributes
+    ----------
+    element : array of int, shape (m,)
+        Boundary element numbers.
+    vertices : array of int, shape (m, 2)
+        Mesh vertices at start and end.
+    edge : array of int, shape (m,)
+        Mesh edge numbers.
+    t : array, shape (m, 2)
+        Contour parameters at start and end; the last one ends at n, the outline's number of points.
+    names : array of str, shape (m,)
+    """
+
+    element: NDArray[np.intp]
+    vertices: NDArray[np.intp]
+    edge: NDArray[np.intp]
+    t: Array
+    names: NDArray[np.str_]
+
+    def on(self, edges: tuple[str, ...]) -> NDArray[np.intp]:
+        """Return the positions of the boundary edges that carry one of the names."""
+        return np.flatnonzero(np.isin(self.names, edges))
+
+
+class Body:
+    """A meshed section whose outline can move a little without a new mesh.
+
+    ``base`` is the outline that was meshed, ``contour`` the present one: it has the same points,
+    displaced. The mesh follows by a harmonic extension of the outline's displacement, set as the mesh's
+    deformation, so that x, y, dx and ds refer to the present outline.
+
+    Parameters
+    ----------
+    contour : Contour
+    field : SizeField
+        Wanted element edges.
+
+    Raises
+    ------
+    MeshError
+        If the new mesh does not pass its gates.
+    """
+
+    def __init__(self, contour: Contour, field: SizeField) -> None:
+        self.field = field
+        self.base = self.contour = fitted(contour, field)
+        self.mesh = section.mesh(self.base, mesh_nodes(self.base, field), field)
+        self._set_up()
+
+    def _set_up(self) -> None:
+        self.outline = _outline(self.mesh, self.base)
+        self.edges = nodal.edge_vertices(self.mesh)
+        self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=2))
+
+    def __getstate__(self) -> dict[str, object]:
+        return {"field": self.field, "base": self.base, "contour": self.contour, "mesh": self.mesh}
+
+    def __setstate__(self, saved: dict[str, object]) -> None:
+        self.__dict__.update(saved)
+        contour, self.contour = self.contour, self.base
+        self._set_up()
+        self.move_to(contour)
+
+    @cached_property
+    def _extension(self) -> tuple[ng.BaseMatrix, ng.BaseMatrix]:
+        """Stiffness of the harmonic extension and its inverse on the inner unknowns of one component."""
+        space = ng.H1(self.mesh, order=2, dirichlet=".*")
+        u, v = space.TnT()
+        h = ng.specialcf.mesh_size
+        matrix = ng.BilinearForm(ng.grad(u) * ng.grad(v) / h * ng.dx).Assemble().mat
+        return matrix, matrix.Inverse(space.FreeDofs(), inverse="sparsecholesky")
+
+    def move_to(self, contour: Contour) -> None:
+        """Let the mesh follow to an outline that has the points of ``base``, displaced.
+
+        Raises
+        ------
+        MeshError
+            If an element would fold or be distorted beyond use; the body is left as it was.
+        """
+        matrix, inverse = self._extension
+        displacement = contour.points - self.base.points
+        controls = self.base.controls(displacement)
+        line, field = self.outline, self.deformation
+        before = field.vec.FV().NumPy().copy()
+        for component in range(2):
+            values = np.zeros(self.mesh.nv + len(self.edges))
+            values[line.vertices[:, 0]] = self.base.at(line.t[:, 0], controls)[:, component]
+            values[self.mesh.nv + line.edge] = self.base.at(line.t.mean(axis=1), controls)[:, component]
+            inner = nodal.join(values, self.edges)
+            bound = np.zeros_like(inner)
+            bound[line.vertices[:, 0]] = inner[line.vertices[:, 0]]
+            bound[self.mesh.nv + line.edge] = inner[self.mesh.nv + line.edge]
+            vector = field.components[component].vec
+            vector.FV().NumPy()[:] = bound
+            vector.data -= inverse @ matrix * vector
+        lowest = self._lowest_jacobian(field)
+        if not lowest > 0.3:
+            field.vec.FV().NumPy()[:] = before
+            raise MeshError(f"moving the mesh with the outline would shrink an element to {lowest:.2f} of its size")
+        self.contour = contour
+        if np.any(displacement):
+            self.mesh.SetDeformation(field)
+        else:
+            self.mesh.UnsetDeformation()
+
+    def _lowest_jacobian(self, field: ng.GridFunction) -> float:
+        self.mesh.UnsetDeformation()
+        jacobian = ng.Det(ng.Id(2) + ng.Grad(field))
+        lowest = float(np.min(jacobian(self.mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 2), ng.VOL))))
+        if np.any(self.contour.points != self.base.points):
+            self.mesh.SetDeformation(field)
+        return lowest
+
+    @cached_property
+    def region_names(self) -> tuple[str, ...]:
+        """Edge names that the mesh knows."""
+        return tuple(self.mesh.GetBoundaries())
+
+    def boundary(self, edges: tuple[str, ...]) -> ng.Region:
+        """Return the region of the named edges; MeshError names an edge that the mesh does not have."""
+        missing = [name for name in edges if name not in self.region_names]
+        if missing:
+            raise MeshError(f"the mesh has no edges {missing}; it has {sorted(set(self.region_names))}")
+        return self.mesh.Boundaries("|".join(edges))
+
+
+def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:
+    """Order the boundary elements along the outline and find the contour parameters of their ends."""
+    points, _ = section.mesh_arrays(mesh)
+    tree = cKDTree(contour.points)
+    scale = contour.lengths.sum()
+    elements = list(mesh.Elements(ng.BND))
+    ends = np.array([[v.nr for v in el.vertices] for el in elements])
+    numbers = np.array([el.nr for el in elements])
+    names = np.array([el.mat for el in elements])
+    edge = np.array([el.edges[0].nr for el in elements])
+    used = np.unique(ends)
+    parameter = np.full(mesh.nv, np.nan)
+    distance, nearest = tree.query(points[used])
+    on_point = distance < 1e-9 * scale
+    parameter[used[on_point]] = nearest[on_point]
+    for vertex in used[~on_point]:
+        parameter[vertex] = _project(contour, points[vertex], 1e-5 * scale)
+    n = len(contour)
+    t = parameter[ends]
+    # Along the outline t grows; only the element that closes it jumps from near n back to 0.
+    span = (t[:, 1] - t[:, 0]) % n
+    flip = span > n / 2
+    ends[flip], t[flip] = ends[flip][:, ::-1], t[flip][:, ::-1]
+    t[:, 1] = np.where(t[:, 1] < t[:, 0], t[:, 1] + n, t[:, 1])
+    order = np.argsort(t[:, 0])
+    t = t[order]
+    if not np.allclose(t[1:, 0], t[:-1, 1]) or not np.isclose(t[-1, 1], t[0, 0] + n):
+        raise MeshError("the mesh's boundary does not follow the outline")
+    return Outline(numbers[order], ends[order], edge[order], t, names[order])
+
+
+def _project(contour: Contour, point: Array, tolerance: float) -> float:
+    """Contour parameter of a point that the mesher put on the outline."""
+    a = contour.points
+    b = np.roll(a, -1, axis=0)
+    s = np.clip(((point - a) * (b - a)).sum(axis=1) / contour.lengths**2, 0, 1)
+    gap = np.linalg.norm(a + s[:, None] * (b - a) - point, axis=1)
+    segment = int(np.argmin(gap))
+    t = segment + float(s[segment])
+    for _ in range(20):
+        t_next = t + float((point - contour.at(t)[0]) @ contour.slopes(t)[0] / (contour.slopes(t)[0] ** 2).sum())
+        t_next = min(max(t_next, segment), segment + 1 - 1e-12)
+        if abs(t_next - t) < 1e-12:
+            break
+        t = t_next
+    if np.linalg.norm(contour.at(t)[0] - point) > max(tolerance, 0.05 * contour.lengths[segment]):
+        raise MeshError(f"the mesh has a boundary node at {point.tolist()}, which is not on the outline")
+    return t

@@ -1,0 +1,101 @@
+"""From the outline to OCC's named splines and to a curved mesh that has passed its gates."""
+
+from __future__ import annotations
+
+import netgen.meshing as ngm
+import netgen.occ as occ
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.errors import MeshError
+from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.sizing import SizeField
+
+MIN_ANGLE = 12.0  # degrees; the mesher usually reaches 28
+
+
+def face(contour: Contour, nodes: NDArray[np.intp]) -> occ.Face:
+    """Build the OCC face whose named spline edges join the chosen contour points.
+
+    Each edge is one cubic Bezier curve: the outline's own spline where the nodes are neighbours, else the
+    Hermite cubic with the spline's tangents. One edge per mesh edge puts the mesh nodes on the outline.
+    """
+    n = len(contour)
+    corner_out = contour.bezier[:, 1] - contour.bezier[:, 0]
+    corner_in = contour.bezier[:, 3] - contour.bezier[:, 2]
+    length = contour.lengths
+    edges, names = [], []
+    for a, b in zip(nodes, np.roll(nodes, -1), strict=True):
+        span = np.arange(a, b if b > a else b + n) % n
+        total = length[span].sum()
+        p, q = contour.points[a], contour.points[b]
+        first = corner_out[a] * (total / length[a])
+        last = corner_in[span[-1]] * (total / length[span[-1]])
+        edges.append(occ.BezierCurve([occ.Pnt(*point, 0) for point in (p, p + first, q - last, q)]))
+        names.append(contour.names[a])
+    result = occ.Face(occ.Wire(edges))
+    for edge, name, source in zip(result.edges, names, edges, strict=True):
+        if (edge.center - source.center).Norm() > 1e-6 * length.sum():
+            raise MeshError("OCC has changed the order of the outline's edges; names would be lost")
+        edge.name = name
+    return result
+
+
+def mesh(contour: Contour, nodes: NDArray[np.intp], field: SizeField) -> ng.Mesh:
+    """Mesh the section with curved triangles (geometry of order 2).
+
+    Raises
+    ------
+    MeshError
+        If area, edge names, smallest angle or Jacobian do not pass their gates.
+    """
+    section = face(contour, nodes)
+    section.name = "rubber"
+    geometry = occ.OCCGeometry(section, dim=2)
+    for seed, size in zip(field.seeds, field.sizes, strict=True):
+        if size < 0.5 * field.coarse:
+            geometry.RestrictH(ngm.Pnt(*seed, 0), size)
+    result = ng.Mesh(geometry.GenerateMesh(maxh=field.coarse, grading=field.grading))
+    result.Curve(2)
+    check(result, area=section.mass, names=set(contour.names))
+    return result
+
+
+def check(mesh: ng.Mesh, *, area: float, names: set[str]) -> None:
+    """Pass a mesh through the gates: area, names, smallest angle, positive Jacobian.
+
+    ``area`` is that of the geometry [mm²]. Raises MeshError naming the gate, the value and the place.
+    """
+    found = ng.Integrate(1, mesh)
+    if not abs(found - area) <= 1e-4 * area:
+        raise MeshError(f"the mesh has an area of {found:.8g} mm², the section {area:.8g} mm²: the mesher gave up")
+    missing = names - set(mesh.GetBoundaries())
+    if missing:
+        raise MeshError(f"the mesh has lost the edges {sorted(missing)}")
+    angle, place = smallest_angle(mesh)
+    if angle < MIN_ANGLE:
+        raise MeshError(f"an element at {place.round(4).tolist()} has an angle of {angle:.1f}°, below {MIN_ANGLE}°")
+    jacobian = ng.Det(ng.specialcf.JacobianMatrix(2))
+    lowest = np.min(jacobian(mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 3), ng.VOL)))
+    if not lowest > 0:
+        raise MeshError("a curved element is folded (Jacobian not positive)")
+
+
+def smallest_angle(mesh: ng.Mesh) -> tuple[float, Array]:
+    """Return the smallest corner angle of the straight triangles [degrees] and the element's centre."""
+    points, triangles = mesh_arrays(mesh)
+    corner = points[triangles]
+    side = np.roll(corner, -1, axis=1) - corner
+    length = np.linalg.norm(side, axis=2)
+    cosine = -(side * np.roll(side, 1, axis=1)).sum(axis=2) / (length * np.roll(length, 1, axis=1))
+    angle = np.degrees(np.arccos(np.clip(cosine, -1, 1))).min(axis=1)
+    worst = int(np.argmin(angle))
+    return float(angle[worst]), corner[worst].mean(axis=0)
+
+
+def mesh_arrays(mesh: ng.Mesh) -> tuple[Array, NDArray[np.intp]]:
+    """Return vertex coordinates, shape (nv, 2), and triangles, shape (ne, 3), of an undeformed mesh."""
+    coordinates = mesh.ngmesh.Coordinates()[:, :2]
+    elements = mesh.ngmesh.Elements2D().NumPy()
+    return np.array(coordinates), elements["nodes"][:, :3].astype(int) - 1

@@ -1,0 +1,86 @@
+"""How fine the mesh shall be: fine where the contact asks for it, growing with the distance from there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ngwear.geometry.contour import Array, Contour
+
+
+@dataclass(frozen=True)
+class SizeField:
+    """Wanted element edge h(X) = min(coarse, min over seeds of (h_seed + grading |X - seed|)) [mm].
+
+    Parameters
+    ----------
+    seeds : array, shape (k, 2)
+        Places that ask for small elements; may be empty.
+    sizes : array, shape (k,)
+        Element edge asked for there [mm].
+    coarse : float
+        Element edge far away [mm].
+    grading : float
+        Growth of the edge with distance [-].
+    """
+
+    seeds: Array
+    sizes: Array
+    coarse: float
+    grading: float = 0.25
+
+    def __call__(self, points: Array) -> Array:
+        """Element edge wanted at points of shape (n, 2); shape (n,)."""
+        points = np.atleast_2d(points)
+        h = np.full(len(points), self.coarse)
+        for size in np.unique(self.sizes):
+            tree = cKDTree(self.seeds[self.sizes == size])
+            reach = (self.coarse - size) / self.grading
+            distance, _ = tree.query(points, distance_upper_bound=max(reach, 1e-12))
+            h = np.minimum(h, size + self.grading * distance)
+        return h
+
+
+def fitted(contour: Contour, field: SizeField) -> Contour:
+    """Return the outline with points inserted until no segment is longer than 1.3 h.
+
+    Segments are halved on the spline; a straight one keeps the polygon's area exactly.
+    """
+    while True:
+        middle = np.arange(len(contour)) + 0.5
+        ends = field(contour.points)
+        h = np.minimum(np.minimum(ends, np.roll(ends, -1)), field(contour.at(middle)))
+        # A long segment may hide a seed between its end points: bound h from the distance it spans.
+        h_inside = np.minimum(h, field.coarse)
+        long = contour.lengths > 1.3 * h_inside
+        if not long.any():
+            return contour
+        contour = contour.inserted(middle[long])
+
+
+def mesh_nodes(contour: Contour, field: SizeField, *, max_turn: float = 0.7) -> NDArray[np.intp]:
+    """Choose the contour points that become mesh nodes: about h apart, turning at most ``max_turn`` rad between two.
+
+    Corners and changes of name are always nodes.
+    """
+    n = len(contour)
+    h = field(contour.points)
+    turn, length = np.abs(contour.turning), contour.lengths
+    fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(n)])
+    start = int(np.argmax(fixed))
+    chosen = [start]
+    run_length = run_turn = 0.0
+    for step in range(1, n):
+        i = (start + step) % n
+        run_length += length[i - 1]
+        ahead = run_length + length[i]
+        size = min(h[i], h[chosen[-1]])
+        if fixed[i] or ahead > 1.3 * size or run_turn + turn[i] > max_turn:
+            chosen.append(i)
+            run_length = run_turn = 0.0
+        else:
+            run_turn += turn[i]
+    return np.array(chosen)

@@ -1,0 +1,7 @@
+"""Rigid counter-surfaces given by their gap, one a file; they know no mesh."""
+
+from ngwear.surfaces.base import RigidSurface
+from ngwear.surfaces.cylinder import Cylinder
+from ngwear.surfaces.plane import Plane
+
+__all__ = ["Cylinder", "Plane", "RigidSurface"]
