@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.contact_profile import ContactProfile
 from ngwear.geometry.body import Body
 from ngwear.surfaces import RigidSurface
 
@@ -58,6 +59,7 @@ class Contact(Term):
         super().__init__()
         self.name, self.edges, self.surface = name, tuple(edges), surface
         self.force_controlled = force_controlled
+        self.modulus = modulus
         self.default_augmentation = 13.0 * modulus
         self.augmentation = ng.Parameter(self.default_augmentation)
         self.floor = 1e-7 / modulus
@@ -99,7 +101,7 @@ class Contact(Term):
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         region = unknowns.body.boundary(self.edges)
         kinematics = unknowns.kinematics
-        self._mesh, self._region = unknowns.body.mesh, region
+        self._body, self._region = unknowns.body, region
         self._start = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         stretch = kinematics.area_stretch(self._start, ng.Grad(self._start))
         p, c = unknowns.trial[self.pressure_name], self.augmentation
@@ -136,23 +138,22 @@ class Contact(Term):
     def _sample(self, field: ng.CoefficientFunction) -> Array:
         return np.asarray(field(self._points)).reshape(-1, 2)
 
-    def end_pressures(self) -> Array:
-        """Nominal pressure at the ends of each mesh edge, in the order of the outline; shape (m, 2) [MPa]."""
-        return self._sample(self._state[self.pressure_name])
-
-    def end_stretches(self) -> Array:
-        """da/dA at the ends of each mesh edge; shape (m, 2) [-]."""
+    def profile(self) -> ContactProfile:
+        """Pressures, places and gaps at the mesh nodes of the named edges, in the order of the outline."""
         u = self._state[DISPLACEMENT]
-        return self._sample(self._kinematics.area_stretch(u, ng.Grad(u)))
+        stretch = self._kinematics.area_stretch(u, ng.Grad(u))
+        return ContactProfile.from_samples(
+            self._body,
+            self.positions,
+            pressure=self._sample(self._state[self.pressure_name]),
+            stretch=self._sample(stretch),
+            place=np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1),
+            gap=self._sample(self.gap(self._state)),
+        )
 
-    def end_places(self) -> Array:
-        """Deformed coordinates of the ends of each mesh edge; shape (m, 2, 2) [mm]."""
-        u = self._state[DISPLACEMENT]
-        return np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1)
-
-    def end_gaps(self) -> Array:
-        """Gap at the ends of each mesh edge; shape (m, 2) [mm]."""
-        return self._sample(self.gap(self._state))
+    def touching(self) -> NDArray[np.bool_]:
+        """Which of the mesh edges in ``positions`` carry pressure."""
+        return self._sample(self._state[self.pressure_name]).mean(axis=1) > 1e-6 * self.modulus
 
     def force(self) -> Array:
         """Resultant of the contact pressure on the rubber; shape (2,) [N], or N/mm in plane strain."""
@@ -160,7 +161,7 @@ class Contact(Term):
         nx, ny = self.surface.normal(*self.place(self._state))
         measure = ng.ds(definedon=self._region, bonus_intorder=2)
         weight = self._kinematics.weight
-        return np.array([ng.Integrate(p * n * weight * measure, self._mesh) for n in (nx, ny)])
+        return np.array([ng.Integrate(p * n * weight * measure, self._body.mesh) for n in (nx, ny)])
 
     def prepare(self) -> None:
         self._start.vec.data = self._state[DISPLACEMENT].vec

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.base import Term, Unknowns
 from ngwear.effects.contact import Contact
 from ngwear.errors import SceneError
 from ngwear.geometry.body import Body
@@ -95,7 +95,6 @@ class FluidPressure(Term):
         touching = np.zeros(self._body.mesh.nv, dtype=bool)
         line = self._body.outline
         for contact in self.contacts:
-            mine = line.on(contact.edges)
-            pressure = contact.end_pressures()
-            touching[line.vertices[mine][pressure.max(axis=1) > 1e-6]] = True
+            ends = contact.touching()
+            touching[line.vertices[contact.positions[ends]]] = True
         return touching

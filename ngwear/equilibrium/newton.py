@@ -22,7 +22,12 @@ class Outcome(enum.Enum):
     TOO_MANY_ITERATIONS = "no convergence: take smaller load steps"
     FOLDED = "an element would turn inside out: take smaller load steps or refine there"
     SINGULAR = "the tangent is singular: is the body held, and does every force-controlled surface touch it?"
-    DIVERGED = "the corrections grow: take smaller load steps"
+    STALLED = "the corrections do not shrink: take smaller load steps"
+    BAD_START = "the first guess has folded elements: start from a state nearer to the solution"
+
+
+HALVINGS = 7  # of a correction that would fold an element
+PATIENCE = 6  # iterations within which the smallest correction must halve
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
     """Bring the problem's state to equilibrium under its present loads.
 
     On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
-    somewhere) are refused and the correction is halved, at most four times.
+    somewhere) are refused and the correction is halved, a few times.
     """
     options = options or NewtonOptions()
     for term in problem.terms:
@@ -94,6 +99,9 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         for contact in contacts:
             contact.augmentation.Set(options.first_augmentation)
     problem.residual(residual)
+    if not math.isfinite(ng.Norm(residual)):
+        report.outcome = Outcome.BAD_START
+        return report
     for report.iterations in range(1, options.max_iterations + 1):
         solver = problem.tangent()
         if solver is None:
@@ -107,7 +115,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
             for contact in contacts:
                 contact.augmentation.Set(contact.default_augmentation)
         step, trial.data = 1.0, vector
-        for _ in range(5):
+        for _ in range(HALVINGS):
             vector.data = trial - step * correction
             problem.residual(residual)
             report.residual = float(ng.Norm(residual))
@@ -122,9 +130,16 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         if step == 1.0 and change <= options.tolerance * size:
             report.outcome = Outcome.CONVERGED
             break
-        if change > 5 * size:
-            report.outcome = Outcome.DIVERGED
+        if _stalled(report.corrections):
+            report.outcome = Outcome.STALLED
             break
     for contact in contacts:
         contact.augmentation.Set(contact.default_augmentation)
     return report
+
+
+def _stalled(corrections: list[float]) -> bool:
+    """Whether the last few corrections bring nothing that those before had not reached."""
+    if len(corrections) <= PATIENCE:
+        return False
+    return min(corrections[-PATIENCE:]) > 0.5 * min(corrections[:-PATIENCE])

@@ -187,11 +187,12 @@ def _project(contour: Contour, point: Array, tolerance: float) -> float:
     segment = int(np.argmin(gap))
     t = segment + float(s[segment])
     for _ in range(20):
-        t_next = t + float((point - contour.at(t)[0]) @ contour.slopes(t)[0] / (contour.slopes(t)[0] ** 2).sum())
-        t_next = min(max(t_next, segment), segment + 1 - 1e-12)
-        if abs(t_next - t) < 1e-12:
+        slope = contour.slopes(t)[0]
+        change = float((point - contour.at(t)[0]) @ slope / (slope @ slope))
+        t += change
+        if abs(change) < 1e-12:
             break
-        t = t_next
-    if np.linalg.norm(contour.at(t)[0] - point) > max(tolerance, 0.05 * contour.lengths[segment]):
-        raise MeshError(f"the mesh has a boundary node at {point.tolist()}, which is not on the outline")
-    return t
+    off = float(np.linalg.norm(contour.at(t)[0] - point))
+    if off > max(tolerance, 0.1 * contour.lengths[segment]):
+        raise MeshError(f"the mesh has a boundary node at {point.tolist()}, {off:.2g} mm off the outline")
+    return t % len(contour)

@@ -18,28 +18,30 @@ MIN_ANGLE = 12.0  # degrees; the mesher usually reaches 28
 def face(contour: Contour, nodes: NDArray[np.intp]) -> occ.Face:
     """Build the OCC face whose named spline edges join the chosen contour points.
 
-    Each edge is one cubic Bezier curve: the outline's own spline where the nodes are neighbours, else the
-    Hermite cubic with the spline's tangents. One edge per mesh edge puts the mesh nodes on the outline.
+    One edge per mesh edge puts the mesh nodes on the outline's points.
     """
     n = len(contour)
-    corner_out = contour.bezier[:, 1] - contour.bezier[:, 0]
-    corner_in = contour.bezier[:, 3] - contour.bezier[:, 2]
-    length = contour.lengths
     edges, names = [], []
     for a, b in zip(nodes, np.roll(nodes, -1), strict=True):
         span = np.arange(a, b if b > a else b + n) % n
-        total = length[span].sum()
-        p, q = contour.points[a], contour.points[b]
-        first = corner_out[a] * (total / length[a])
-        last = corner_in[span[-1]] * (total / length[span[-1]])
-        edges.append(occ.BezierCurve([occ.Pnt(*point, 0) for point in (p, p + first, q - last, q)]))
+        edges.append(_edge(contour, span))
         names.append(contour.names[a])
     result = occ.Face(occ.Wire(edges))
     for edge, name, source in zip(result.edges, names, edges, strict=True):
-        if (edge.center - source.center).Norm() > 1e-6 * length.sum():
+        if (edge.center - source.center).Norm() > 1e-6 * contour.lengths.sum():
             raise MeshError("OCC has changed the order of the outline's edges; names would be lost")
         edge.name = name
     return result
+
+
+def _edge(contour: Contour, span: NDArray[np.intp]) -> occ.Edge:
+    """The outline's spline over one or more segments: exact for one, through all points and tangents for more."""
+    control = contour.bezier[span]
+    if len(span) == 1:
+        return occ.BezierCurve([occ.Pnt(*point, 0) for point in control[0]])
+    points = [occ.Pnt(*point, 0) for point in (*control[:, 0], control[-1, 3])]
+    slope = np.vstack([control[:, 1] - control[:, 0], control[-1:, 3] - control[-1:, 2]])
+    return occ.SplineInterpolation(points, tangents={i: occ.Vec(*d, 0) for i, d in enumerate(slope)})
 
 
 def mesh(contour: Contour, nodes: NDArray[np.intp], field: SizeField) -> ng.Mesh:

@@ -1,0 +1,122 @@
+"""Write contour.toml: an invented rod seal after the description of the source work.
+
+Nothing here is measured. Section about 5 x 4 mm; the lip tip at radius 10.2 (bore 20.4, 1.8 below the
+22.2 rod); seven ridges left of the lip (air side), two on the right (sealed side).
+
+    python geometries/rod_seal/make_contour.py
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+TIP = (3.15, 10.2)  # lip tip: axial position and radius [mm]
+TIP_RADIUS = 0.04
+FLANKS = (40.0, 35.0)  # degrees from the rod axis, air side and sealed side
+PITCH = 0.33
+LEFT = 0.25  # where the first left ridge begins
+LEFT_BASE = (10.58, 10.41)  # radius of the ridge roots at the first and after the last left ridge
+LEFT_HEIGHT = 0.10
+RIGHT = 3.66
+RIGHT_BASE = (10.43, 10.60)
+RIGHT_HEIGHT = 0.10
+SPACING = 0.01
+
+
+def ridges(start: float, count: int, base: tuple[float, float], height: float) -> np.ndarray:
+    """Sinusoidal ridges: tip and root radius pitch^2 / (2 pi^2 height) = 0.046 mm."""
+    z = np.linspace(start, start + count * PITCH, 4000)
+    r = np.interp(z, [z[0], z[-1]], base) - height / 2 * (1 - np.cos(2 * np.pi * (z - start) / PITCH))
+    return resample(np.column_stack([z, r]), SPACING)
+
+
+def resample(points: np.ndarray, spacing: float) -> np.ndarray:
+    """Points at equal arc length, about ``spacing`` apart."""
+    s = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    at = np.linspace(0, s[-1], max(2, int(np.ceil(s[-1] / spacing)) + 1))
+    return np.column_stack([np.interp(at, s, c) for c in points.T])
+
+
+def rounded(vertices: list[tuple[float, float, float]], spacing: float) -> np.ndarray:
+    """Polyline through (z, r, radius) with each inner vertex rounded, resampled."""
+    dense = [np.array(vertices[0][:2])]
+    for (a, b, c), radius in zip(
+        zip(*(np.array(vertices)[i : len(vertices) - 2 + i, :2] for i in range(3)), strict=True),
+        [v[2] for v in vertices[1:-1]],
+        strict=True,
+    ):
+        e, f = (a - b) / np.linalg.norm(a - b), (c - b) / np.linalg.norm(c - b)
+        half = 0.5 * np.arccos(e @ f)
+        if radius == 0:
+            dense.append(b)
+            continue
+        p, centre = b + e * radius / np.tan(half), b + (e + f) / np.linalg.norm(e + f) * radius / np.sin(half)
+        sweep = np.pi - 2 * half
+        turn = np.sign((b - a)[0] * (c - b)[1] - (b - a)[1] * (c - b)[0])
+        for angle in np.linspace(0, turn * sweep, 60):
+            cos, sin = np.cos(angle), np.sin(angle)
+            dense.append(centre + np.array([[cos, -sin], [sin, cos]]) @ (p - centre))
+    dense.append(np.array(vertices[-1][:2]))
+    dense = np.array(dense)
+    fine = [dense[:1]]
+    for a, b in zip(dense[:-1], dense[1:], strict=True):
+        n = max(1, int(np.linalg.norm(b - a) / 0.001))
+        fine.append(a + (b - a) * np.arange(1, n + 1)[:, None] / n)
+    return resample(np.vstack(fine), spacing)
+
+
+def edges() -> list[tuple[str, np.ndarray]]:
+    """Return the named edges, counter-clockwise from the foot of the back face."""
+    left = ridges(LEFT, 7, LEFT_BASE, LEFT_HEIGHT)
+    right = ridges(RIGHT, 2, RIGHT_BASE, RIGHT_HEIGHT)
+    alpha, beta = np.radians(FLANKS)
+    # The rounded tip lies above the apex of the flanks.
+    half = (np.pi - alpha - beta) / 2
+    apex_drop = TIP_RADIUS * (1 / np.sin(half) * np.cos(half - (np.pi / 2 - alpha)) - 1)
+    apex = (TIP[0], TIP[1] - apex_drop)
+    foot_left = (apex[0] - (left[-1, 1] - apex[1]) / np.tan(alpha), left[-1, 1])
+    foot_right = (apex[0] + (right[0, 1] - apex[1]) / np.tan(beta), right[0, 1])
+    lip = rounded([(*left[-1], 0), (*foot_left, 0.1), (*apex, TIP_RADIUS), (*foot_right, 0.1), (*right[0], 0)], SPACING)
+    lip[:, 1] += TIP[1] - lip[:, 1].min()
+    lip[0], lip[-1] = left[-1], right[0]
+    heel = rounded([(0, 11.4, 0), (0, LEFT_BASE[0], 0.15), (*left[0], 0)], 0.04)
+    toe = rounded([(*right[-1], 0), (4.6, 10.62, 0.2), (5.0, 11.4, 0.3), (5.0, 12.4, 0)], 0.04)
+    return [
+        ("heel", heel),
+        ("left ridges", left),
+        ("lip", lip),
+        ("right ridges", right),
+        ("sealed face", toe),
+        ("sealed shoulder", np.array([(5.0, 12.4), (5.0, 13.9)])),
+        ("sealed chamfer", np.array([(5.0, 13.9), (4.7, 14.2)])),
+        ("static face", np.array([(4.7, 14.2), (0.3, 14.2)])),
+        ("air chamfer", np.array([(0.3, 14.2), (0.0, 13.9)])),
+        ("back face", np.array([(0.0, 13.9), (0.0, 11.4)])),
+    ]
+
+
+def main() -> None:
+    """Write the outline beside this script."""
+    smooth = {"left ridges", "lip", "right ridges", "sealed face"}
+    lines = [
+        'title = "Invented rod seal, section 5 x 4 mm, bore 20.4 mm"',
+        'provenance = "invented for ngwear after the description in 10.5772/50498; not measured; made by make_contour.py"',
+        'coordinates = ["axial [mm]", "radius [mm]"]',
+    ]
+    for name, points in edges():
+        lines += [
+            "",
+            "[[edge]]",
+            f'name = "{name}"',
+            f"corner = {str(name not in smooth).lower()}  # at its first point",
+            "points = [",
+        ]
+        lines += [f"  [{z:.6f}, {r:.6f}]," for z, r in points[:-1]]
+        lines += ["]"]
+    Path(__file__).with_name("contour.toml").write_text("\n".join(lines) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,130 @@
+"""Load steps: predicted from the last two states, cut back when a solve fails, grown when it is easy."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import ngsolve as ng
+
+from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
+from ngwear.equilibrium.problem import Loads, Problem
+from ngwear.errors import ConvergenceError
+
+
+@dataclass(frozen=True)
+class StepOptions:
+    """How to walk from one set of loads to another.
+
+    Parameters
+    ----------
+    first : float
+        Fraction of the way tried first, in (0, 1].
+    smallest : float
+        Fraction below which the walk gives up.
+    easy : int
+        Iterations up to which the next step grows.
+    max_updates : int
+        Solves allowed for what terms fix within a solve (the fluid front) to settle.
+    """
+
+    first: float = 1.0
+    smallest: float = 1 / 512
+    easy: int = 8
+    max_updates: int = 8
+    newton: NewtonOptions = NewtonOptions()
+
+
+@dataclass
+class Work:
+    """What a walk cost: solves, Newton iterations and steps that were cut back."""
+
+    solves: int = 0
+    iterations: int = 0
+    retries: int = 0
+
+    def count(self, report: Report) -> None:
+        """Add one solve."""
+        self.solves += 1
+        self.iterations += report.iterations
+        self.retries += not report.converged
+
+    def add(self, other: Work) -> None:
+        """Add another walk's cost."""
+        self.solves += other.solves
+        self.iterations += other.iterations
+        self.retries += other.retries
+
+
+def settle(problem: Problem, options: StepOptions, work: Work) -> Report:
+    """Solve at the present loads, again while a term (the fluid front) asks for it."""
+    newton = options.newton
+    for _ in range(options.max_updates):
+        report = solve(problem, newton)
+        work.count(report)
+        if not report.converged:
+            return report
+        if not any([term.refresh() for term in problem.terms]):
+            return report
+        newton = replace(newton, first_augmentation=None)
+    return report
+
+
+def advance(
+    problem: Problem,
+    target: Loads,
+    options: StepOptions | None = None,
+    *,
+    on_step: Callable[[float, Report], None] | None = None,
+) -> Work:
+    """Walk the problem from its present equilibrium and loads to ``target``.
+
+    Loads vary linearly along the way. ``on_step`` is called with the fraction reached and the report of
+    its solve.
+
+    Raises
+    ------
+    ConvergenceError
+        When the step has been cut back to ``smallest``; the state and loads are the last equilibrium.
+    """
+    options = options or StepOptions()
+    start = {name: problem.get_loads()[name] for name in target} if target else {}
+    vector = problem.state.vec
+    last = vector.CreateVector()
+    rate = vector.CreateVector()
+    last.data = vector
+    have_rate = False
+    done, step, work = 0.0, options.first, Work()
+    while done < 1.0:
+        step = min(step, 1.0 - done)
+        if 1.0 - done - step < 1e-9:
+            step = 1.0 - done
+        goal = done + step
+        problem.set_loads({name: start[name] + goal * (target[name] - start[name]) for name in target})
+        if have_rate:
+            vector.data = last + step * rate
+        report = settle(problem, options, work)
+        if have_rate and not report.converged and report.outcome is Outcome.BAD_START:
+            vector.data = last
+            report = settle(problem, options, work)
+        if not report.converged:
+            vector.data = last
+            have_rate = False
+            step /= 2
+            if step < options.smallest:
+                problem.set_loads({name: start[name] + done * (target[name] - start[name]) for name in target})
+                raise ConvergenceError(
+                    f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}", report
+                )
+            continue
+        rate.data = (1 / step) * (vector - last)
+        last.data = vector
+        have_rate = True
+        done = goal
+        if on_step is not None:
+            on_step(done, report)
+        if report.iterations <= options.easy:
+            step *= 2
+        elif report.iterations > 2 * options.easy:
+            step /= 2
+    return work
