@@ -17,10 +17,10 @@ TIP_RADIUS = 0.04
 FLANKS = (40.0, 35.0)  # degrees from the rod axis, air side and sealed side
 PITCH = 0.33
 LEFT = 0.25  # where the first left ridge begins
-LEFT_BASE = (10.58, 10.41)  # radius of the ridge roots at the first and after the last left ridge
+LEFT_BASE = (10.53, 10.385)  # radius of the ridge roots at the first and after the last left ridge
 LEFT_HEIGHT = 0.10
 RIGHT = 3.66
-RIGHT_BASE = (10.43, 10.60)
+RIGHT_BASE = (10.385, 10.58)
 RIGHT_HEIGHT = 0.10
 SPACING = 0.01
 
@@ -67,6 +67,12 @@ def rounded(vertices: list[tuple[float, float, float]], spacing: float) -> np.nd
     return resample(np.vstack(fine), spacing)
 
 
+def quarter(z: float, r: float, start: float) -> np.ndarray:
+    """Quarter circle of radius 0.4 around (z, r), from ``start`` degrees."""
+    angle = np.radians(np.linspace(start, start + 90.0, 11))
+    return np.column_stack([z + 0.4 * np.cos(angle), r + 0.4 * np.sin(angle)])
+
+
 def edges() -> list[tuple[str, np.ndarray]]:
     """Return the named edges, counter-clockwise from the foot of the back face."""
     left = ridges(LEFT, 7, LEFT_BASE, LEFT_HEIGHT)
@@ -89,17 +95,17 @@ def edges() -> list[tuple[str, np.ndarray]]:
         ("lip", lip),
         ("right ridges", right),
         ("sealed face", toe),
-        ("sealed shoulder", np.array([(5.0, 12.4), (5.0, 13.9)])),
-        ("sealed chamfer", np.array([(5.0, 13.9), (4.7, 14.2)])),
-        ("static face", np.array([(4.7, 14.2), (0.3, 14.2)])),
-        ("air chamfer", np.array([(0.3, 14.2), (0.0, 13.9)])),
-        ("back face", np.array([(0.0, 13.9), (0.0, 11.4)])),
+        ("sealed shoulder", np.array([(5.0, 12.4), (5.0, 13.8)])),
+        ("sealed round", quarter(4.6, 13.8, 0.0)),
+        ("static face", np.array([(4.6, 14.2), (0.4, 14.2)])),
+        ("air round", quarter(0.4, 13.8, 90.0)),
+        ("back face", np.array([(0.0, 13.8), (0.0, 11.4)])),
     ]
 
 
 def main() -> None:
     """Write the outline beside this script."""
-    smooth = {"left ridges", "lip", "right ridges", "sealed face"}
+    corner = {"heel", "back face", "sealed shoulder", "sealed round", "static face", "air round"}
     lines = [
         'title = "Invented rod seal, section 5 x 4 mm, bore 20.4 mm"',
         'provenance = "invented for ngwear after the description in 10.5772/50498; not measured; made by make_contour.py"',
@@ -110,7 +116,7 @@ def main() -> None:
             "",
             "[[edge]]",
             f'name = "{name}"',
-            f"corner = {str(name not in smooth).lower()}  # at its first point",
+            f"corner = {str(name in corner).lower()}  # at its first point",
             "points = [",
         ]
         lines += [f"  [{z:.6f}, {r:.6f}]," for z, r in points[:-1]]

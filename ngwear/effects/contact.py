@@ -145,15 +145,44 @@ class Contact(Term):
         return ContactProfile.from_samples(
             self._body,
             self.positions,
-            pressure=self._sample(self._state[self.pressure_name]),
+            pressure=self.end_pressures(),
             stretch=self._sample(stretch),
             place=np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1),
             gap=self._sample(self.gap(self._state)),
         )
 
+    def end_places(self) -> Array:
+        """Reference coordinates of both ends of each mesh edge, in the order of the outline; shape (m, 2, 2)."""
+        return self._body.contour.at(self._body.outline.t[self.positions].ravel()).reshape(-1, 2, 2)
+
+    def end_pressures(self) -> Array:
+        """Nominal pressure at both ends of each mesh edge, as the unknown has it; shape (m, 2) [MPa]."""
+        return self._sample(self._state[self.pressure_name])
+
+    def pressure_vector(self, ends: Array) -> Array:
+        """Unknowns of a nominal pressure given at both ends of each mesh edge; ``ends`` of shape (m, 2) [MPa]."""
+        field = self._state[self.pressure_name]
+        vector = field.vec.FV().NumPy()
+        keep = vector.copy()
+        elements = self._body.outline.element[self.positions]
+        dofs = np.array([field.space.GetDofNrs(ng.ElementId(ng.BND, int(nr))) for nr in elements])
+        shapes = []
+        for k in range(2):
+            vector[:] = 0.0
+            vector[dofs[:, k]] = 1.0
+            shapes.append(self._sample(field))
+        out = np.zeros_like(keep)
+        out[dofs] = np.linalg.solve(np.stack(shapes, axis=-1), ends[..., None])[..., 0]
+        vector[:] = keep
+        return out
+
+    def at_nodes(self, field: ng.CoefficientFunction) -> Array:
+        """Values of a field at the nodes of ``profile``, averaged over the edges that meet there."""
+        return ContactProfile.average(self._body, self.positions, self._sample(field))
+
     def touching(self) -> NDArray[np.bool_]:
         """Which of the mesh edges in ``positions`` carry pressure."""
-        return self._sample(self._state[self.pressure_name]).mean(axis=1) > 1e-6 * self.modulus
+        return self.end_pressures().mean(axis=1) > 1e-6 * self.modulus
 
     def force(self) -> Array:
         """Resultant of the contact pressure on the rubber; shape (2,) [N], or N/mm in plane strain."""

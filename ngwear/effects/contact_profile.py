@@ -54,6 +54,10 @@ class ContactProfile:
         Cauchy pressure P / (da/dA) [MPa].
     gap : array, shape (k,)
         Distance from the surface [mm].
+    weight : array, shape (k,)
+        Reference length that belongs to each node, int phi_i ds [mm].
+    edges : array of int, shape (m, 2)
+        The two nodes of each mesh edge.
     """
 
     t: Array
@@ -62,42 +66,53 @@ class ContactProfile:
     nominal_pressure: Array
     pressure: Array
     gap: Array
+    weight: Array
+    edges: NDArray[np.intp]
 
     @classmethod
     def from_samples(
         cls, body: Body, positions: NDArray[np.intp], *, pressure: Array, stretch: Array, place: Array, gap: Array
     ) -> ContactProfile:
         """Build from samples at both ends of each mesh edge; ``place`` of shape (m, 2, 2), the others (m, 2)."""
+        t, node = _nodes(body, positions)
         ends = body.outline.t[positions]
-        n = len(body.base)
-        length = np.linalg.norm(body.contour.at(ends[:, 1]) - body.contour.at(ends[:, 0]), axis=1)
+        length = body.contour.arc_lengths(ends[:, 0], ends[:, 1])
         first, second = pressure.T
         share = np.stack([2 * first + second, first + 2 * second], axis=1) * length[:, None] / 6
-        t, node = np.unique(np.round(ends % n, 9), return_inverse=True)
-        node = node.reshape(ends.shape)
-
-        def lumped(values: Array) -> Array:
-            return np.bincount(node.ravel(), values.ravel(), len(t))
-
-        weight = lumped(np.repeat(length[:, None] / 2, 2, axis=1))
-        count = lumped(np.ones_like(ends))
-        nominal = np.maximum(lumped(share) / weight, 0.0)
-        where = np.stack([lumped(place[..., k]) / count for k in range(2)], axis=1)
+        weight = np.bincount(node.ravel(), np.repeat(length / 2, 2), len(t))
+        nominal = np.maximum(np.bincount(node.ravel(), share.ravel(), len(t)) / weight, 0.0)
         return cls(
             t=t,
             reference=body.contour.at(t),
-            place=where,
+            place=np.stack([cls.average(body, positions, place[..., k]) for k in range(2)], axis=1),
             nominal_pressure=nominal,
-            pressure=nominal / (lumped(stretch) / count),
-            gap=lumped(gap) / count,
+            pressure=nominal / cls.average(body, positions, stretch),
+            gap=cls.average(body, positions, gap),
+            weight=weight,
+            edges=node,
         )
+
+    @staticmethod
+    def average(body: Body, positions: NDArray[np.intp], samples: Array) -> Array:
+        """Mean at each node of samples at the ends of the mesh edges, shape (m, 2)."""
+        t, node = _nodes(body, positions)
+        return np.bincount(node.ravel(), samples.ravel(), len(t)) / np.bincount(node.ravel(), minlength=len(t))
 
     def zones(self, *, threshold: float = 1e-3) -> list[Zone]:
         """Connected pieces where the pressure exceeds ``threshold`` times its maximum."""
         p = self.pressure
         on = p > max(threshold * p.max(initial=0.0), 1e-12)
-        jump = np.flatnonzero(np.diff(np.concatenate([[False], on, [False]]).astype(int)))
-        return [self._zone(a, b) for a, b in zip(jump[::2], jump[1::2], strict=True)]
+        joined = np.zeros(len(p) + 1, dtype=bool)  # whether a mesh edge joins node i - 1 to node i
+        joined[self.edges.max(axis=1)[np.abs(np.diff(self.edges, axis=1).ravel()) == 1]] = True
+        zones, start = [], None
+        for i in range(len(p) + 1):
+            inside = i < len(p) and on[i]
+            if start is not None and not (inside and joined[i]):
+                zones.append(self._zone(start, i))
+                start = None
+            if start is None and inside:
+                start = i
+        return zones
 
     def _zone(self, a: int, b: int) -> Zone:
         start, end = self._edge(a, -1), self._edge(b - 1, 1)
@@ -118,3 +133,10 @@ class ContactProfile:
             outer = np.linalg.norm(self.place[ahead] - self.place[node])
             fraction = float(np.clip(self.pressure[node] ** 2 / slope * inner / outer, 0.0, 1.0))
         return self.place[node] + fraction * (self.place[ahead] - self.place[node])
+
+
+def _nodes(body: Body, positions: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp]]:
+    """Contour parameters of the nodes, ascending, and the node at both ends of each mesh edge, shape (m, 2)."""
+    ends = np.round(body.outline.t[positions] % len(body.base), 9)
+    t, node = np.unique(ends, return_inverse=True)
+    return t, node.reshape(ends.shape)

@@ -27,9 +27,14 @@ class Elasticity(Term):
         return {PRESSURE: ng.H1(body.mesh, order=self.order - 1)}
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        self._state = unknowns.state
         u, p = unknowns.u, unknowns.trial[PRESSURE]
         kinematics = unknowns.kinematics
         i1, i2, j = kinematics.invariants(u, ng.Grad(u))
         psi = self.material.isochoric_energy(j ** (-2 / 3) * i1, j ** (-4 / 3) * i2)
         psi = psi + p * (j - 1) - p * p / (2 * self.material.bulk_modulus)
         form += ng.Variation((psi * kinematics.weight).Compile() * ng.dx)
+
+    def volume_ratio(self) -> ng.CoefficientFunction:
+        """J = 1 + p / K of the present state [-]."""
+        return 1 + self._state[PRESSURE] / self.material.bulk_modulus

@@ -27,7 +27,7 @@ class Outcome(enum.Enum):
 
 
 HALVINGS = 7  # of a correction that would fold an element
-PATIENCE = 6  # iterations within which the smallest correction must halve
+PATIENCE = 8  # iterations within which the smallest correction must halve
 
 
 @dataclass(frozen=True)

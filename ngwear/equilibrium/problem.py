@@ -20,6 +20,8 @@ from ngwear.geometry.body import Body
 Array = NDArray[np.float64]
 THREADED_FROM = 12_000  # unknowns; below, waking the second core costs more than it brings
 
+IMBALANCE = "imbalance"
+
 Loads = Mapping[str, float]
 
 
@@ -88,7 +90,25 @@ class Problem:
         self.parameters: dict[str, ng.Parameter] = {}
         for term in self.terms:
             self.parameters |= term.loads
+        self._imbalance: ng.BaseVector | None = None
         self._solver: DirectSolver | None = None
+
+    def freeze_imbalance(self) -> None:
+        """Take the present residual as a fictitious load, so that the present state is an equilibrium.
+
+        The load ``"imbalance"`` is set to 1; walking it to 0 leads from any admissible guess to the solution
+        (Newton homotopy).
+        """
+        self._imbalance = None
+        vector = self.state.vec.CreateVector()
+        self.residual(vector)
+        self._imbalance = vector
+        self.parameters[IMBALANCE] = ng.Parameter(1.0)
+
+    def drop_imbalance(self) -> None:
+        """Forget the fictitious load."""
+        self._imbalance = None
+        self.parameters.pop(IMBALANCE, None)
 
     @property
     def free(self) -> ng.BitArray:
@@ -121,6 +141,8 @@ class Problem:
         """Write the residual at the present state, zero on prescribed unknowns."""
         self.form.Apply(self.state.vec, out)
         out.data = ng.Projector(self.free, True) * out
+        if self._imbalance is not None:
+            out.data -= self.parameters[IMBALANCE].Get() * self._imbalance
 
     def tangent(self) -> DirectSolver | None:
         """Assemble and factorise the tangent at the present state; None if it is singular or not finite."""

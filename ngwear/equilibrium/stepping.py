@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import ngsolve as ng
 
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
-from ngwear.equilibrium.problem import Loads, Problem
+from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
 
 
@@ -128,3 +128,15 @@ def advance(
         elif report.iterations > 2 * options.easy:
             step /= 2
     return work
+
+
+def relax(problem: Problem, options: StepOptions | None = None, **kwargs: Callable[[float, Report], None]) -> Work:
+    """Walk from the present state, any admissible guess, to the equilibrium under the present loads.
+
+    The guess's imbalance becomes a fictitious load that is taken away in steps. Raises as ``advance`` does.
+    """
+    problem.freeze_imbalance()
+    try:
+        return advance(problem, {IMBALANCE: 0.0}, options, **kwargs)
+    finally:
+        problem.drop_imbalance()

@@ -173,6 +173,18 @@ class Contour:
         d = 3 * np.diff(self.bezier, axis=1)[segment % len(self)]
         return (1 - s) ** 2 * d[:, 0] + 2 * (1 - s) * s * d[:, 1] + s**2 * d[:, 2]
 
+    def arc_lengths(self, start: Array, end: Array) -> Array:
+        """Length of the outline between contour parameters less than one segment apart, or chordwise beyond [mm]."""
+        nodes, weights = np.polynomial.legendre.leggauss(3)
+        middle, half = 0.5 * (start + end), 0.5 * (end - start)
+        within = np.floor(start + 1e-9) >= np.ceil(end - 1e-9) - 1
+        chord = np.linalg.norm(self.at(end) - self.at(start), axis=1)
+        arc = sum(
+            w * np.linalg.norm(self.slopes(middle + half * x), axis=1) * half
+            for x, w in zip(nodes, weights, strict=True)
+        )
+        return np.where(within, arc, chord)
+
     def moved(self, displacement: Array) -> Contour:
         """Return the outline with its points displaced, shape (n, 2); names and corners stay."""
         return replace(self, points=self.points + displacement)

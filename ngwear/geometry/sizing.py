@@ -61,7 +61,7 @@ def fitted(contour: Contour, field: SizeField) -> Contour:
         contour = contour.inserted(middle[long])
 
 
-def mesh_nodes(contour: Contour, field: SizeField, *, max_turn: float = 0.7) -> NDArray[np.intp]:
+def mesh_nodes(contour: Contour, field: SizeField, *, max_turn: float = 0.5) -> NDArray[np.intp]:
     """Choose the contour points that become mesh nodes: about h apart, turning at most ``max_turn`` rad between two.
 
     Corners and changes of name are always nodes.

@@ -1,0 +1,82 @@
+"""Carry a problem's states to another mesh of the same section."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.contact import Contact
+from ngwear.effects.elasticity import PRESSURE
+from ngwear.equilibrium.problem import Problem
+from ngwear.fields.transfer import PointSearch
+from ngwear.geometry import nodal
+
+Array = NDArray[np.float64]
+
+
+def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
+    """Interpolate state vectors of ``old`` to the mesh of ``new``; a first guess, not an equilibrium.
+
+    Displacement and volumetric stress are taken at the new nodes (the nearest old point for a node just
+    outside), contact pressures from the two nearest old nodes of the outline, travels of rigid bodies as they
+    are. Both problems must have the same unknowns.
+    """
+    search = PointSearch(old.body.mesh, old.body.deformation, _node_places(new))
+    near = {after.name: _neighbours(before, after) for before, after in _contact_pairs(old, new)}
+    keep = old.state.vec.FV().NumPy().copy()
+    carried = []
+    for state in states:
+        old.state.vec.FV().NumPy()[:] = state
+        out = new.state.vec.CreateVector()
+        out[:] = 0.0
+        target = out.FV().NumPy()
+        nodes = search(old.fields[DISPLACEMENT])
+        where = new.part(DISPLACEMENT)
+        target[where] = np.concatenate([nodal.join(nodes[:, k], new.body.edges) for k in range(2)])
+        stress = search(old.fields[PRESSURE])[: new.body.mesh.nv, 0]
+        target[new.part(PRESSURE)] = stress
+        for before, after in _contact_pairs(old, new):
+            index, weight, same, twin = near[after.name]
+            ends = (before.profile().nominal_pressure[index] * weight).sum(axis=-1)
+            ends[same] = before.end_pressures()[twin[same]]
+            target[new.part(after.pressure_name)] = after.pressure_vector(ends)
+            if after.force_controlled:
+                target[new.part(after.travel_name)] = state[old.part(before.travel_name)]
+        carried.append(target.copy())
+    old.state.vec.FV().NumPy()[:] = keep
+    return carried
+
+
+def _contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:
+    before = {t.name: t for t in old.terms if isinstance(t, Contact)}
+    return [(before[t.name], t) for t in new.terms if isinstance(t, Contact)]
+
+
+def _node_places(problem: Problem) -> Array:
+    """Reference coordinates of vertices, then edge midpoints of the (curved) mesh."""
+    mesh = problem.body.mesh
+    space = ng.H1(mesh, order=2)
+    field = ng.GridFunction(space)
+    columns = []
+    for coordinate in (ng.x, ng.y):
+        field.Set(coordinate)
+        columns.append(nodal.split(field.vec.FV().NumPy(), problem.body.edges))
+    return np.stack(columns, axis=1)
+
+
+def _neighbours(
+    old: Contact, new: Contact
+) -> tuple[NDArray[np.intp], Array, NDArray[np.bool_], NDArray[np.intp]]:
+    """For both ends of each new mesh edge the two nearest old nodes and their weights; and which edges are old ones."""
+    places, before = new.end_places(), old.end_places()
+    distance, index = cKDTree(old.profile().reference).query(places, k=2)
+    weight = distance[..., ::-1] / np.maximum(distance.sum(axis=-1, keepdims=True), 1e-300)
+    _, twin = cKDTree(before.mean(axis=1)).query(places.mean(axis=1))
+    off = np.linalg.norm(before[twin] - places, axis=-1).max(axis=1)
+    same = off < 1e-3 * np.linalg.norm(places[:, 1] - places[:, 0], axis=-1)
+    return index, weight, same, twin

@@ -1,0 +1,248 @@
+"""What is simulated, as plain frozen data: no mesh, no solver, nothing that runs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+
+from ngwear.errors import SceneError
+from ngwear.geometry.contour import Contour
+from ngwear.materials import Hyperelastic
+from ngwear.surfaces import RigidSurface
+
+
+def _require(ok: bool, place: str, value: object, remedy: str) -> None:
+    if not ok:
+        raise SceneError(place, value, remedy)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactSpec:
+    """A rigid surface and the edges that may touch it.
+
+    Parameters
+    ----------
+    name : str
+    edges : tuple of str
+    surface : RigidSurface
+        In its final place; while mounting it comes in from first touch.
+    friction : float
+        Coefficient of full sliding friction [-], >= 0.
+    specific_wear_rate : float
+        Archard's k [mm²/N], >= 0: depth per nominal pressure and sliding distance.
+    force : float or None
+        Press the surface on with this force [N, or N/mm in plane strain] instead of by its place.
+    refine : bool
+        Whether the mesh shall follow this contact; wearing contacts always are followed.
+    """
+
+    name: str
+    edges: tuple[str, ...]
+    surface: RigidSurface
+    friction: float = 0.0
+    specific_wear_rate: float = 0.0
+    force: float | None = None
+    refine: bool = False
+
+    def __post_init__(self) -> None:
+        place = f"contact '{self.name}'"
+        _require(bool(self.edges), f"{place}.edges", self.edges, "name at least one edge")
+        _require(self.friction >= 0, f"{place}.friction", self.friction, "must be at least 0")
+        _require(
+            self.specific_wear_rate >= 0,
+            f"{place}.specific_wear_rate",
+            self.specific_wear_rate,
+            "must be at least 0 mm²/N",
+        )
+        _require(
+            self.force is None or self.force > 0, f"{place}.force", self.force, "must be greater than 0 (it presses)"
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class FluidSpec:
+    """Where a sealed fluid may go: ``edges`` in one piece, ``inlet`` always wetted."""
+
+    edges: tuple[str, ...]
+    inlet: tuple[str, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class SupportSpec:
+    """Edges held at their place in x, y or both."""
+
+    edges: tuple[str, ...]
+    x: bool = True
+    y: bool = True
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stroke:
+    """One phase of the cycle.
+
+    Parameters
+    ----------
+    name : str
+    travel : float
+        Sliding distance [mm], > 0.
+    direction : float
+        Along the surfaces' tangent (their normal turned clockwise): 1 forward, -1 backward.
+    pressure : float
+        Sealed pressure [MPa], >= 0.
+    """
+
+    name: str
+    travel: float
+    direction: float = 1.0
+    pressure: float = 0.0
+
+    def __post_init__(self) -> None:
+        place = f"program.stroke '{self.name}'"
+        _require(self.travel > 0, f"{place}.travel", self.travel, "must be greater than 0 mm")
+        _require(-1 <= self.direction <= 1, f"{place}.direction", self.direction, "must lie between -1 and 1")
+        _require(self.pressure >= 0, f"{place}.pressure", self.pressure, "must be at least 0 MPa")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Program:
+    """Mounting, then the strokes of ``cycle`` in turn until ``strokes`` are done."""
+
+    cycle: tuple[Stroke, ...]
+    strokes: int
+
+    def __post_init__(self) -> None:
+        _require(bool(self.cycle), "program.stroke", self.cycle, "give at least one stroke")
+        _require(self.strokes >= 0, "program.strokes", self.strokes, "must be at least 0")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Accuracy:
+    """Knobs that trade time for error.
+
+    Parameters
+    ----------
+    patch : float
+        Element edge in the followed contacts [mm].
+    coarse : float
+        Element edge far away [mm].
+    mounting : float
+        Element edge at the followed edges' finest while the part is mounted [mm]; the mesh is refined after.
+    grading : float
+        Growth of the element edge with the distance from the patch [-].
+    order : int
+        Polynomial order of the displacement.
+    wear_error : float
+        Relative error of the worn area that the cycle jump may make.
+    """
+
+    patch: float = 0.01
+    coarse: float = 0.2
+    mounting: float = 0.03
+    grading: float = 0.25
+    order: int = 2
+    wear_error: float = 0.01
+
+    def __post_init__(self) -> None:
+        _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
+        _require(self.coarse >= self.patch, "accuracy.coarse", self.coarse, "must be at least the patch size")
+        _require(self.mounting >= self.patch, "accuracy.mounting", self.mounting, "must be at least the patch size")
+        _require(0 < self.grading <= 1, "accuracy.grading", self.grading, "must lie between 0 and 1")
+        _require(self.order in (2,), "accuracy.order", self.order, "must be 2")
+        _require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wear:
+    """How the worn depth is integrated.
+
+    Parameters
+    ----------
+    scheme : str
+        ``"implicit"`` (backward Euler inside the contact law, stable for every step) or ``"explicit"``.
+    step : str
+        ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"each"``: every stroke.
+    max_jump : int
+        Most cycles at once.
+    """
+
+    scheme: str = "implicit"
+    step: str = "jump"
+    max_jump: int = 1000
+
+    def __post_init__(self) -> None:
+        _require(
+            self.scheme in ("implicit", "explicit"), "wear.scheme", self.scheme, "must be 'implicit' or 'explicit'"
+        )
+        _require(self.step in ("jump", "each"), "wear.step", self.step, "must be 'jump' or 'each'")
+        _require(self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Scene:
+    """Everything that a run needs.
+
+    Raises
+    ------
+    SceneError
+        With the place in the scene, the value found and the remedy.
+    """
+
+    name: str
+    contour: Contour
+    material: Hyperelastic
+    contacts: tuple[ContactSpec, ...]
+    program: Program
+    axisymmetric: bool = False
+    fluid: FluidSpec | None = None
+    supports: tuple[SupportSpec, ...] = ()
+    accuracy: Accuracy = field(default_factory=Accuracy)
+    wear: Wear = field(default_factory=Wear)
+
+    def __post_init__(self) -> None:
+        known = self.contour.edge_names
+        users = [(f"contact '{c.name}'.edges", c.edges) for c in self.contacts]
+        users += [(f"support[{i}].edges", s.edges) for i, s in enumerate(self.supports)]
+        if self.fluid is not None:
+            users += [("fluid.edges", self.fluid.edges), ("fluid.inlet", self.fluid.inlet)]
+            _require(
+                set(self.fluid.inlet) <= set(self.fluid.edges) and bool(self.fluid.inlet),
+                "fluid.inlet",
+                self.fluid.inlet,
+                f"must name some of the fluid's edges {list(self.fluid.edges)}",
+            )
+        for place, edges in users:
+            for edge in edges:
+                _require(edge in known, place, edge, f"the outline has no such edge; it has {list(known)}")
+        names = [c.name for c in self.contacts]
+        _require(len(set(names)) == len(names), "contact.name", names, "must differ from each other")
+        if self.axisymmetric:
+            lowest = float(self.contour.points[:, 1].min())
+            _require(lowest > 0, "contour", lowest, "an axisymmetric section must lie above the axis: radii > 0 mm")
+        for stroke in self.program.cycle:
+            _require(
+                stroke.pressure == 0 or self.fluid is not None,
+                f"program.stroke '{stroke.name}'.pressure",
+                stroke.pressure,
+                "a sealed pressure needs a [fluid] table that says which edges it may reach",
+            )
+        for contact in self.contacts:
+            self._check_side(contact)
+
+    def _check_side(self, contact: ContactSpec) -> None:
+        """A rigid body that swallows the part, or that it can never reach, is on the wrong side."""
+        from shapely import Polygon
+
+        centre = Polygon(self.contour.points).centroid
+        gap = float(contact.surface.gap(centre.x, centre.y))
+        _require(
+            gap > 0 and math.isfinite(gap),
+            f"contact '{contact.name}'.surface",
+            contact.surface,
+            f"lies on the wrong side: the middle of the section is {-gap:.4g} mm inside the rigid body; "
+            "check diameters, point and normal",
+        )
+
+    @property
+    def followed(self) -> tuple[ContactSpec, ...]:
+        """Contacts that the mesh follows."""
+        return tuple(c for c in self.contacts if c.refine or c.specific_wear_rate > 0)

@@ -1,0 +1,178 @@
+"""Scenes as TOML files: a serialisation of the classes in ``ngwear.scene``."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from dataclasses import MISSING, fields
+from pathlib import Path
+from typing import Any
+
+from ngwear.errors import SceneError
+from ngwear.geometry.contour_files import read_contour
+from ngwear.materials import Hyperelastic, MooneyRivlin, NeoHooke
+from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Program, Scene, Stroke, SupportSpec, Wear
+from ngwear.surfaces import Cylinder, Plane, RigidSurface
+
+KINDS = {"axisymmetric": True, "plane strain": False}
+_MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
+    "neo-hooke": NeoHooke,
+    "mooney-rivlin": MooneyRivlin,
+}
+
+
+def _rename(function: Callable[..., Any], **names: str) -> Callable[..., Any]:
+    def build(**values: Any) -> Any:
+        return function(**{names.get(key, key): value for key, value in values.items()})
+
+    return build
+
+
+_SURFACES: dict[str, tuple[Callable[..., RigidSurface], set[str]]] = {
+    "rod": (Plane.rod, {"diameter"}),
+    "bore": (Plane.bore, {"diameter"}),
+    "plane": (_rename(Plane, normal="normal_vector"), {"point", "normal"}),
+    "cylinder": (Cylinder, {"centre", "radius", "push"}),
+}
+_SURFACE_OPTIONAL = {"push"}
+
+
+def read_scene(path: Path | str) -> Scene:
+    """Read a scene; relative file names in it start from the scene's folder.
+
+    Raises
+    ------
+    SceneError
+        For an unknown or missing key, a value out of range, or a file that is not TOML.
+    GeometryError
+        If the outline is not usable.
+    """
+    path = Path(path)
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SceneError("scene", str(path), f"cannot be read: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SceneError("scene", str(path), f"is not valid TOML: {error}") from None
+    allowed = {"scene", "contour", "material", "contact", "fluid", "support", "program", "accuracy", "wear"}
+    _known("", data, allowed)
+    head = _table(data, "scene")
+    _known("scene.", head, {"name", "kind"})
+    kind = _get(head, "scene", "kind")
+    if kind not in KINDS:
+        raise SceneError("scene.kind", kind, f"must be one of {list(KINDS)}")
+    outline = _table(data, "contour")
+    _known("contour.", outline, {"file"})
+    return Scene(
+        name=str(head.get("name", path.stem)),
+        axisymmetric=KINDS[kind],
+        contour=read_contour(path.parent / str(_get(outline, "contour", "file"))),
+        material=_material(_table(data, "material")),
+        contacts=tuple(_contact(i, table) for i, table in enumerate(_list(data, "contact"))),
+        fluid=_dataclass(FluidSpec, "fluid", data["fluid"]) if "fluid" in data else None,
+        supports=tuple(_dataclass(SupportSpec, f"support[{i}]", t) for i, t in enumerate(_list(data, "support"))),
+        program=_program(_table(data, "program")),
+        accuracy=_dataclass(Accuracy, "accuracy", data.get("accuracy", {})),
+        wear=_dataclass(Wear, "wear", data.get("wear", {})),
+    )
+
+
+def _material(table: dict[str, Any]) -> Hyperelastic:
+    model = _get(table, "material", "model")
+    if model not in _MATERIALS:
+        raise SceneError("material.model", model, f"must be one of {list(_MATERIALS)}")
+    values = {key: value for key, value in table.items() if key not in ("model", "source")}
+    return _dataclass(_MATERIALS[model], "material", values)
+
+
+def _contact(number: int, table: dict[str, Any]) -> ContactSpec:
+    place = f"contact[{number}]"
+    values = dict(table)
+    surface = dict(_get(values, place, "surface"))
+    values["surface"] = _surface(f"{place}.surface", surface)
+    return _dataclass(ContactSpec, place, values)
+
+
+def _surface(place: str, table: dict[str, Any]) -> RigidSurface:
+    kind = table.pop("type", None)
+    if kind not in _SURFACES:
+        raise SceneError(f"{place}.type", kind, f"must be one of {list(_SURFACES)}")
+    build, keys = _SURFACES[kind]
+    _known(f"{place}.", table, keys)
+    for key in sorted(keys - _SURFACE_OPTIONAL - set(table)):
+        _get(table, place, key)
+    return build(**{key: _checked(f"{place}.{key}", value) for key, value in table.items()})
+
+
+def _program(table: dict[str, Any]) -> Program:
+    _known("program.", table, {"strokes", "stroke"})
+    strokes = _get(table, "program", "strokes")
+    cycle = tuple(_dataclass(Stroke, f"program.stroke[{i}]", t) for i, t in enumerate(_list(table, "stroke")))
+    if not isinstance(strokes, int):
+        raise SceneError("program.strokes", strokes, "must be a whole number")
+    return Program(strokes=strokes, cycle=cycle)
+
+
+def _dataclass(cls: Any, place: str, table: Any) -> Any:
+    if not isinstance(table, dict):
+        raise SceneError(place, table, "must be a table")
+    own = fields(cls)
+    _known(f"{place}.", table, {f.name for f in own})
+    for f in own:
+        if f.default is MISSING and f.default_factory is MISSING:
+            _get(table, place, f.name)
+    kind = {f.name: str(f.type) for f in own}
+    return cls(**{key: _typed(f"{place}.{key}", value, kind[key]) for key, value in table.items()})
+
+
+def _typed(place: str, value: Any, kind: str) -> Any:
+    """Check a TOML value against the annotation of the field that takes it."""
+    if kind.startswith("tuple[str"):
+        if isinstance(value, str) or not all(isinstance(v, str) for v in value):
+            raise SceneError(place, value, 'must be a list of names, such as ["lip"]')
+        return tuple(value)
+    if kind == "bool" and not isinstance(value, bool):
+        raise SceneError(place, value, "must be true or false")
+    if kind == "str" and not isinstance(value, str):
+        raise SceneError(place, value, "must be a text in quotes")
+    if kind == "int" and (isinstance(value, bool) or not isinstance(value, int)):
+        raise SceneError(place, value, "must be a whole number")
+    if kind.startswith("float"):
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise SceneError(place, value, "must be a number")
+        return float(value)
+    return value
+
+
+def _checked(place: str, value: Any) -> Any:
+    if isinstance(value, list):
+        if len(value) != 2 or not all(isinstance(v, int | float) for v in value):
+            raise SceneError(place, value, "must be two numbers [x, y]")
+        return (float(value[0]), float(value[1]))
+    return _typed(place, value, "float")
+
+
+def _known(prefix: str, table: dict[str, Any], allowed: set[str]) -> None:
+    for key, value in table.items():
+        if key not in allowed:
+            raise SceneError(f"{prefix}{key}", value, f"unknown key; known here: {sorted(allowed)}")
+
+
+def _get(table: dict[str, Any], place: str, key: str) -> Any:
+    if key not in table:
+        raise SceneError(f"{place}.{key}", None, "is missing")
+    return table[key]
+
+
+def _table(data: dict[str, Any], key: str) -> dict[str, Any]:
+    value = _get(data, "scene file", key)
+    if not isinstance(value, dict):
+        raise SceneError(key, value, f"must be a table [{key}]")
+    return value
+
+
+def _list(data: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    value = data.get(key, [])
+    if not isinstance(value, list):
+        raise SceneError(key, value, f"must be a list of tables [[{key}]]")
+    return value

@@ -1,0 +1,205 @@
+"""A scene set up on a meshed body: its terms, its problem, and the mesh that follows the contact."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.contact import Contact
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.effects.elasticity import Elasticity
+from ngwear.effects.fluid_pressure import FluidPressure
+from ngwear.effects.friction import FullSliding
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.errors import SceneError
+from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
+from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.sizing import SizeField
+from ngwear.scene import ContactSpec, Scene, Stroke
+
+Array = NDArray[np.float64]
+
+
+class Stage:
+    """The effects of a scene on one mesh; only what the scene lists is built.
+
+    Attributes
+    ----------
+    contacts : dict of str to Contact
+    frictions : dict of str to FullSliding
+    fluid : FluidPressure or None
+    problem : Problem
+    """
+
+    def __init__(self, scene: Scene, body: Body) -> None:
+        self.scene, self.body = scene, body
+        modulus = scene.material.shear_modulus
+        self.elasticity = Elasticity(scene.material, order=scene.accuracy.order)
+        self.contacts = {
+            spec.name: Contact(
+                spec.name, spec.edges, spec.surface, modulus=modulus, force_controlled=spec.force is not None
+            )
+            for spec in scene.contacts
+        }
+        self.frictions = {
+            spec.name: FullSliding(self.contacts[spec.name], spec.friction)
+            for spec in scene.contacts
+            if spec.friction > 0
+        }
+        self.fluid = None
+        if scene.fluid is not None:
+            self.fluid = FluidPressure(scene.fluid.edges, scene.fluid.inlet, tuple(self.contacts.values()))
+        terms = [self.elasticity, *self.contacts.values(), *self.frictions.values()]
+        if self.fluid is not None:
+            terms.append(self.fluid)
+        self.problem = Problem(
+            body,
+            Axisymmetric() if scene.axisymmetric else PlaneStrain(),
+            terms,
+            supports=[Support(s.edges, s.x, s.y) for s in scene.supports],
+            order=scene.accuracy.order,
+        )
+
+    def stroke_loads(self, stroke: Stroke) -> dict[str, float]:
+        """Loads of a stroke: every surface in its place, sliding in the stroke's direction, under its pressure."""
+        loads: dict[str, float] = {}
+        for spec in self.scene.contacts:
+            contact = self.contacts[spec.name]
+            loads |= dict.fromkeys(contact.loads, 0.0 if spec.force is None else spec.force)
+        for friction in self.frictions.values():
+            loads |= dict.fromkeys(friction.loads, stroke.direction)
+        if self.fluid is not None:
+            loads |= dict.fromkeys(self.fluid.loads, stroke.pressure)
+        return loads
+
+    def stretched_guess(self) -> bool:
+        """Stretch an axisymmetric part, at constant volume, until it clears its shafts; False if none overlaps it.
+
+        ``r' = sqrt(r^2 + (a + d)^2 - a^2)`` for an overlap d at the radius a: the exact displacement of an
+        incompressible ring, so that the guess is free of volumetric strain. Letting the part settle from
+        there takes a fifth of the iterations of pushing a shaft in from first touch.
+        """
+        if not self.scene.axisymmetric:
+            return False
+        shafts = [c for c in self.scene.contacts if c.force is None and c.surface.approach[1] > 0.5]
+        growth = 0.0
+        for spec in shafts:
+            overlap = self._overlap(spec)
+            radius = float(self.body.contour.points[self._clearance(spec)[1], 1])
+            growth = max(growth, (radius + overlap) ** 2 - radius**2)
+        if growth == 0.0:
+            return False
+        self.problem.fields[DISPLACEMENT].Set(ng.CF((0, (ng.y**2 + growth) ** 0.5 - ng.y)))
+        return True
+
+    def first_touch(self) -> dict[str, float]:
+        """Loads before mounting: surfaces that would overlap the part drawn back until they just touch it."""
+        loads: dict[str, float] = {}
+        for spec in self.scene.contacts:
+            contact = self.contacts[spec.name]
+            overlap = self._overlap(spec)
+            if spec.force is None:
+                loads |= dict.fromkeys(contact.loads, -overlap)
+            else:
+                loads |= dict.fromkeys(contact.loads, 0.0)
+                start = self.problem.fields[contact.travel_name]
+                start.vec[:] = -self._clearance(spec)[0]
+        for friction in self.frictions.values():
+            loads |= dict.fromkeys(friction.loads, self.scene.program.cycle[0].direction)
+        return loads
+
+    def _clearance(self, spec: ContactSpec) -> tuple[float, int]:
+        """Smallest gap over the contact's edges [mm] and the contour point where it is."""
+        contour = self.body.contour
+        mine = contour.on(spec.edges)
+        touching = mine | np.roll(mine, 1)
+        gap = np.array([float(spec.surface.gap(x, y)) for x, y in contour.points[touching]])
+        worst = int(np.argmin(gap))
+        return float(gap[worst]), int(np.flatnonzero(touching)[worst])
+
+    def _overlap(self, spec: ContactSpec) -> float:
+        """How far the surface has to be drawn back along its approach to free the part [mm]."""
+        gap, _ = self._clearance(spec)
+        if gap >= 0:
+            return 0.0
+        ax, ay = spec.surface.approach
+        contour = self.body.contour
+        mine = contour.on(spec.edges)
+        points = contour.points[mine | np.roll(mine, 1)]
+        low, high = 0.0, float(np.ptp(contour.points, axis=0).max())
+
+        def smallest(retreat: float) -> float:
+            return min(float(spec.surface.gap(x + retreat * ax, y + retreat * ay)) for x, y in points)
+
+        if smallest(high) < 0:
+            raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "cannot be drawn back from the part")
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if smallest(middle) >= 0 else (middle, high)
+        return high
+
+    def wanted_size(self, phases: list[Array]) -> SizeField:
+        """Element sizes for the present contacts: the patch where a followed one carries or nearly carries load.
+
+        ``phases`` are state vectors, one for each stroke of the cycle.
+        """
+        accuracy = self.scene.accuracy
+        contour = self.body.contour
+        ask = np.zeros(len(contour), dtype=bool)
+        vector = self.problem.state.vec.FV().NumPy()
+        keep = vector.copy()
+        for phase in phases:
+            vector[:] = phase
+            for spec in self.scene.followed:
+                profile = self.contacts[spec.name].profile()
+                near = (profile.nominal_pressure > 0) | (profile.gap < 2 * accuracy.patch)
+                ask |= _spanned(contour, profile, near)
+        vector[:] = keep
+        seeds = contour.points[ask]
+        return SizeField(seeds, np.full(len(seeds), accuracy.patch), accuracy.coarse, accuracy.grading)
+
+    def outgrown(self, phases: list[Array]) -> bool:
+        """Whether a followed contact has reached edges much longer than the patch's."""
+        wanted = self.wanted_size(phases)
+        if len(wanted.seeds) == 0:
+            return False
+        return bool(np.any(self.body.field(wanted.seeds) > 1.5 * self.scene.accuracy.patch))
+
+
+def _spanned(contour: Contour, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Contour points at marked nodes, and between them where a mesh edge joins two."""
+    n = len(contour)
+    ask = np.zeros(n, dtype=bool)
+    ask[np.rint(profile.t[near]).astype(int) % n] = True
+    for i, j in profile.edges[near[profile.edges].all(axis=1)]:
+        a, b = profile.t[i], profile.t[j]
+        b = b if b > a else b + n
+        ask[np.arange(np.floor(a), np.ceil(b) + 1).astype(int) % n] = True
+    return ask
+
+
+def mounting_field(scene: Scene) -> SizeField:
+    """Element sizes while the part is mounted: the followed edges fine enough for their shape."""
+    accuracy, contour = scene.accuracy, scene.contour
+    curved = np.abs(contour.turning) > 1e-3
+    mine = np.zeros(len(contour), dtype=bool)
+    for spec in scene.followed:
+        on = contour.on(spec.edges)
+        mine |= on | np.roll(on, 1)
+    seeds = contour.points[mine & curved & ~contour.corners]
+    for spec in scene.followed:
+        if len(seeds) == 0 or spec.force is not None:
+            seeds = np.vstack([seeds, _nearest_place(scene, spec)])
+    return SizeField(seeds, np.full(len(seeds), accuracy.mounting), accuracy.coarse, max(accuracy.grading, 0.3))
+
+
+def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:
+    """Where the surface comes nearest to its edges, shape (1, 2)."""
+    contour = scene.contour
+    t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])
+    places = contour.at(t)
+    gap = [float(spec.surface.gap(x, y)) for x, y in places]
+    return places[[int(np.argmin(gap))]]

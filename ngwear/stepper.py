@@ -1,0 +1,401 @@
+"""The loop: equilibrium of each stroke, wear, new outline, and a new mesh where one is needed."""
+
+from __future__ import annotations
+
+import logging
+import math
+import warnings
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.carry import carry
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
+from ngwear.errors import ConvergenceError, GeometryError, MeshError
+from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.recession import recede, tidied
+from ngwear.scene import Scene
+from ngwear.stage import Stage, mounting_field
+from ngwear.wear.archard import critical_distance, worn_share
+from ngwear.wear.control import JumpControl
+
+Array = NDArray[np.float64]
+log = logging.getLogger(__name__)
+
+REMESH_DEPTH = 0.4  # of the patch's edge: how far the outline may move on one mesh
+
+
+@dataclass
+class Phase:
+    """What is kept of one stroke of the cycle, for the same stroke of the next one.
+
+    Attributes
+    ----------
+    vector : array
+        Equilibrium of the last time.
+    rate : array or None
+        Its change per cycle, on the same mesh.
+    pressure : array, shape (n,)
+        Nominal pressure of all wearing contacts at the contour points [MPa], of the last time.
+    """
+
+    vector: Array
+    rate: Array | None = None
+    pressure: Array | None = None
+
+
+@dataclass
+class Ledger:
+    """Book of worn material and of the errors made.
+
+    Attributes
+    ----------
+    worn : float
+        int W dA by the law, as section area [mm²].
+    removed : float
+        Area taken off the outline's polygon [mm²].
+    area_error : float
+        Sum of the steps' embedded errors of worn area [mm²].
+    remesh_jump : float
+        Largest relative change of the section's area in a remesh [-].
+    """
+
+    worn: float = 0.0
+    removed: float = 0.0
+    area_error: float = 0.0
+    remesh_jump: float = 0.0
+    remeshes: int = 0
+
+
+@dataclass
+class State:
+    """An accepted state of a run; ``Stepper.advance`` turns one into the next."""
+
+    stage: Stage
+    phases: list[Phase]
+    control: JumpControl
+    strokes: int = 0
+    ledger: Ledger = field(default_factory=Ledger)
+    work: Work = field(default_factory=Work)
+    depth_error: Array | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        saved = dict(self.__dict__)
+        saved["stage"] = (self.stage.scene, self.stage.body)
+        return saved
+
+    def __setstate__(self, saved: dict[str, Any]) -> None:
+        self.__dict__.update(saved)
+        self.stage = Stage(*saved["stage"])
+
+    @property
+    def contour(self) -> Contour:
+        """The outline as it is now."""
+        return self.stage.body.contour
+
+
+@dataclass(frozen=True)
+class StrokeReport:
+    """One solved stroke, seen just after its equilibrium and before its wear moves the outline.
+
+    Attributes
+    ----------
+    phase : int
+        Which stroke of the cycle.
+    last_stroke : int
+        Number of the last stroke that this solve stands for.
+    repeats : int
+        How many strokes of this kind it stands for.
+    """
+
+    phase: int
+    last_stroke: int
+    repeats: int
+    iterations: int
+
+
+class Stepper:
+    """Run a scene by hand: ``state = stepper.start()``, then ``state = stepper.advance(state)`` until done.
+
+    Parameters
+    ----------
+    scene : Scene
+    on_stroke : callable or None
+        Called with (state, StrokeReport) at each equilibrium of the cycle, before the outline moves.
+    on_mount : callable or None
+        Called with the fraction of the mounting that is done.
+    """
+
+    def __init__(self, scene: Scene, *, on_stroke: Any = None, on_mount: Any = None) -> None:
+        self.scene = scene
+        self.on_stroke = on_stroke or (lambda state, report: None)
+        self.on_mount = on_mount or (lambda fraction: None)
+        self.worn_edges = tuple(e for c in scene.contacts if c.specific_wear_rate > 0 for e in c.edges)
+        self._warn_if_unstable()
+
+    def _warn_if_unstable(self) -> None:
+        wear, cycle = self.scene.wear, self.scene.program.cycle
+        rate = max((c.specific_wear_rate for c in self.scene.contacts), default=0.0)
+        critical = critical_distance(self.scene.accuracy.patch, rate, self.scene.material.plane_strain_modulus)
+        longest = max(s.travel for s in cycle)
+        if wear.scheme == "explicit" and longest > critical:
+            warnings.warn(
+                f"explicit wear over {longest:.4g} mm a step is unstable: the pressure will show the mesh beyond "
+                f"{critical:.4g} mm; use scheme = 'implicit', or shorter strokes",
+                RuntimeWarning,
+                stacklevel=3,
+            )
+
+    def start(self) -> State:
+        """Mount the part on a coarse mesh, solve each stroke of the cycle once, and refine to the contact.
+
+        Raises
+        ------
+        ConvergenceError
+            If the part cannot be mounted.
+        """
+        scene = self.scene
+        stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
+        control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
+        state = State(stage, [], control)
+        problem = stage.problem
+        phases = len(scene.program.cycle)
+        state.work.add(self._mount(stage))
+        for i, stroke in enumerate(scene.program.cycle):
+            state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.25)))
+            state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
+            self.on_mount(0.7 + 0.2 * (i + 1) / phases)
+        while state.stage.outgrown([p.vector for p in state.phases]) and state.ledger.remeshes < 4:
+            self._remesh(state)
+            for i, stroke in enumerate(scene.program.cycle):
+                self._solve_phase(state, i, stroke)
+            self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
+        self.on_mount(1.0)
+        return state
+
+    def _mount(self, stage: Stage) -> Work:
+        """Bring the surfaces to their places, without fluid pressure."""
+        problem = stage.problem
+        loads = {k: v for k, v in stage.stroke_loads(self.scene.program.cycle[0]).items() if "fluid" not in k}
+        options = StepOptions(first=0.25)
+
+        def report(fraction: float, _: Any) -> None:
+            self.on_mount(0.7 * fraction)
+
+        if stage.stretched_guess():
+            problem.set_loads(loads)
+            try:
+                return relax(problem, options, on_step=report)
+            except ConvergenceError as error:
+                log.info("%s: mounting by interference instead", error)
+                problem.state.vec[:] = 0.0
+        problem.set_loads(stage.first_touch())
+        return advance(problem, loads, options, on_step=report)
+
+    def finished(self, state: State) -> bool:
+        """Whether all strokes of the program are done."""
+        return state.strokes >= self.scene.program.strokes
+
+    def advance(self, state: State) -> State:
+        """Take one step: every stroke of the cycle once, each standing for as many as the control allows.
+
+        A step that fails, or whose error is too large, is taken back and tried with half the cycles.
+
+        Raises
+        ------
+        ConvergenceError, GeometryError, MeshError
+            When a single cycle fails; the state is the last accepted one.
+        """
+        program = self.scene.program
+        while True:
+            left = math.ceil((program.strokes - state.strokes) / len(program.cycle))
+            cycles = 1 if self.scene.wear.step == "each" else min(state.control.cycles, left)
+            saved = self._save(state)
+            try:
+                ratio = self._step(state, cycles)
+            except (ConvergenceError, GeometryError, MeshError) as error:
+                self._restore(state, saved)
+                state.work.retries += 1
+                if cycles == 1:
+                    raise
+                log.info("step of %d cycles failed (%s); trying half", cycles, error)
+                state.control.cut(cycles)
+                continue
+            if self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles):
+                self._restore(state, saved)
+                state.work.retries += 1
+                state.control.cut(cycles)
+                continue
+            state.control.update(ratio, cycles)
+            return state
+
+    def _save(self, state: State) -> dict[str, Any]:
+        return {
+            "stage": state.stage,
+            "contour": state.contour,
+            "phases": [replace(p) for p in state.phases],
+            "strokes": state.strokes,
+            "ledger": replace(state.ledger),
+            "depth_error": None if state.depth_error is None else state.depth_error.copy(),
+        }
+
+    def _restore(self, state: State, saved: dict[str, Any]) -> None:
+        contour = saved.pop("contour")
+        state.__dict__.update(saved)
+        state.stage.body.move_to(contour)
+
+    def _step(self, state: State, cycles: int) -> float:
+        """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown)."""
+        program = self.scene.program
+        kinds = len(program.cycle)
+        first = state.strokes % kinds
+        done = state.strokes
+        worn_before, error_before, known = state.ledger.worn, state.ledger.area_error, True
+        for i in [(first + k) % kinds for k in range(kinds)]:
+            stroke = program.cycle[i]
+            position = (i - first) % kinds
+            left = program.strokes - done - position
+            repeats = min(cycles, math.ceil(left / kinds))
+            if repeats <= 0:
+                break
+            distance = repeats * stroke.travel
+            iterations = self._solve_phase(state, i, stroke, distance=distance, repeats=repeats)
+            state.strokes += repeats
+            self.on_stroke(state, StrokeReport(i, state.strokes, repeats, iterations))
+            known &= self._wear(state, i, distance)
+        self._remesh_if_needed(state)
+        worn = state.ledger.worn - worn_before
+        if not known:
+            return math.nan
+        return (state.ledger.area_error - error_before) / worn if worn > 0 else 0.0
+
+    def _solve_phase(self, state: State, index: int, stroke: Any, *, distance: float = 0.0, repeats: int = 0) -> int:
+        """Bring one stroke of the cycle to equilibrium, its wear over ``distance`` implicit; return iterations."""
+        stage, phase = state.stage, state.phases[index]
+        problem = stage.problem
+        vector = problem.state.vec.FV().NumPy()
+        problem.set_loads(stage.stroke_loads(stroke))
+        implicit = self.scene.wear.scheme == "implicit"
+        for spec in self.scene.contacts:
+            stage.contacts[spec.name].compliance.Set(spec.specific_wear_rate * distance if implicit else 0.0)
+        before, fresh = phase.vector, phase.rate is None
+        work = Work()
+        for guess in [before] if fresh else [before + repeats * phase.rate, before]:
+            vector[:] = guess
+            for term in problem.terms:
+                term.refresh()
+            if settle(problem, StepOptions(), work).converged:
+                break
+        else:
+            self._approach(state, index, stroke, work)
+        state.work.add(work)
+        rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
+        state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None)
+        return work.iterations
+
+    def _approach(self, state: State, index: int, stroke: Any, work: Work) -> None:
+        """Reach a stroke's equilibrium in steps: from its last state, else from the stroke before it in the cycle."""
+        stage, cycle = state.stage, self.scene.program.cycle
+        problem = stage.problem
+        vector = problem.state.vec.FV().NumPy()
+        vector[:] = state.phases[index].vector
+        try:
+            work.add(relax(problem, StepOptions(first=0.25)))
+            return
+        except ConvergenceError as error:
+            log.info("%s: trying from the stroke before", error)
+        before = (index - 1) % len(cycle)
+        vector[:] = state.phases[before].vector
+        problem.set_loads(stage.stroke_loads(cycle[before]))
+        try:
+            work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.25)))
+        except ConvergenceError as error:
+            raise ConvergenceError(
+                f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
+            ) from None
+
+    def _wear(self, state: State, index: int, distance: float) -> bool:
+        """Take the stroke's worn area off the outline; return whether its error is known."""
+        stage, contour = state.stage, state.contour
+        share = np.zeros(len(contour))
+        pressure = np.zeros(len(contour))
+        old = state.phases[index].pressure
+        if state.depth_error is None:
+            state.depth_error = np.zeros(len(contour))
+        for spec in self.scene.contacts:
+            if spec.specific_wear_rate == 0:
+                continue
+            contact = stage.contacts[spec.name]
+            profile = contact.profile()
+            ratio = contact.at_nodes(stage.elasticity.volume_ratio())
+            depth = spec.specific_wear_rate * distance * profile.nominal_pressure / ratio
+            share += worn_share(contour, profile, depth)
+            pressure += _at_points(contour, profile, spec.specific_wear_rate * profile.nominal_pressure)
+        known = old is not None
+        if known:
+            half = 0.5 * distance * (old - pressure)
+            width = 0.5 * (contour.lengths + np.roll(contour.lengths, 1))
+            state.ledger.area_error += float(np.abs(half) @ width)
+            state.depth_error += half
+        state.phases[index].pressure = pressure
+        new = recede(contour, share, self.worn_edges)
+        state.ledger.worn += float(share.sum())
+        state.ledger.removed += contour.area - new.area
+        if len(new) == len(contour):
+            try:
+                stage.body.move_to(new)
+                return known
+            except MeshError as error:
+                log.info("%s: a new mesh is needed", error)
+        self._remesh(state, new)
+        return known
+
+    def _remesh_if_needed(self, state: State) -> None:
+        body = state.stage.body
+        moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
+        outgrown = state.stage.outgrown([p.vector for p in state.phases])
+        if outgrown or moved > REMESH_DEPTH * self.scene.accuracy.patch:
+            self._remesh(state)
+
+    def _remesh(self, state: State, contour: Contour | None = None) -> None:
+        """Mesh the present (or the given) outline anew, fine where the contact is, and carry all states over."""
+        old = state.stage
+        contour = old.body.contour if contour is None else contour
+        wanted = old.wanted_size([p.vector for p in state.phases])
+        tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
+        state.ledger.remesh_jump = max(state.ledger.remesh_jump, abs(tidy.area - contour.area) / contour.area)
+        body = Body(tidy, wanted)
+        stage = Stage(self.scene, body)
+        vectors = carry(old.problem, [p.vector for p in state.phases], stage.problem)
+        before, after = old.body.contour, body.contour
+        for phase, vector in zip(state.phases, vectors, strict=True):
+            phase.vector, phase.rate = vector, None
+            if phase.pressure is not None:
+                phase.pressure = _moved_values(before, after, phase.pressure)
+        if state.depth_error is not None:
+            state.depth_error = _moved_values(before, after, state.depth_error)
+        state.stage = stage
+        state.ledger.remeshes += 1
+
+
+def _at_points(contour: Contour, profile: Any, values: Array) -> Array:
+    """Nodal values of a contact at the contour points, zero off its edges."""
+    n = len(contour)
+    out = np.zeros(n)
+    for i, j in profile.edges:
+        a, b = profile.t[i], profile.t[j]
+        b = b if b > a else b + n
+        inside = np.arange(math.ceil(a - 1e-9), math.floor(b + 1e-9) + 1)
+        out[inside % n] = np.interp(inside, [a, b], [values[i], values[j]])
+    return out
+
+
+def _moved_values(before: Contour, after: Contour, values: Array) -> Array:
+    """Values at the points of one outline at those of another with almost the same shape."""
+    from scipy.spatial import cKDTree
+
+    _, nearest = cKDTree(before.points).query(after.points)
+    return values[nearest]

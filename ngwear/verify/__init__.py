@@ -1,0 +1,39 @@
+"""Reference cases, one a file: each module's ``run()`` returns its checks.
+
+A case's module docstring states the problem, the reference with its source, and the units. Modules are
+imported when they are run; listing the cases loads no solver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+
+from ngwear.errors import SceneError
+from ngwear.verify.base import Check
+
+CASES: dict[str, str] = {
+    "tangents": "ngwear.verify.tangents",
+    "convergence": "ngwear.verify.convergence",
+    "locking": "ngwear.verify.locking",
+    "hertz": "ngwear.verify.hertz",
+    "p1a": "ngwear.verify.p1a",
+    "ring": "ngwear.verify.ring",
+}
+
+__all__ = ["CASES", "Check", "verify"]
+
+
+def verify(names: Iterable[str] | None = None) -> list[Check]:
+    """Run the named cases, or all of them, and return their checks.
+
+    Raises
+    ------
+    SceneError
+        For a name that is no case.
+    """
+    chosen = list(CASES) if names is None else list(names)
+    for name in chosen:
+        if name not in CASES:
+            raise SceneError("verify", name, f"no such case; known: {', '.join(CASES)}")
+    return [check for name in chosen for check in import_module(CASES[name]).run()]

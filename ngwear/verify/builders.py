@@ -1,0 +1,39 @@
+"""Outlines and meshes that the reference cases share."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.sizing import SizeField
+
+
+def rectangle(x: tuple[float, float], y: tuple[float, float]) -> Contour:
+    """Rectangle with the edges bottom, right, top and left."""
+    points = np.array([[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
+    return Contour(points, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
+
+
+def quarter_ring(inner: float, outer: float) -> Contour:
+    """Quarter of a ring around the origin with the edges bore and outside, and the cuts along x and along y."""
+    n = 60  # segments an arc: the spline is then within 1e-9 of the circle
+    angle = np.linspace(0, np.pi / 2, n + 1)
+    arc = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    corners = np.zeros(2 * n + 2, dtype=bool)
+    corners[[0, n, n + 1, -1]] = True
+    names = ("outside",) * n + ("along y",) + ("bore",) * n + ("along x",)
+    return Contour(np.vstack([outer * arc, inner * arc[::-1]]), names, corners)
+
+
+def meshed(contour: Contour, coarse: float, seeds: Array | None = None, size: Array | float = 0.0) -> Body:
+    """Mesh a contour with elements of ``coarse`` [mm]; at the seeds, shape (k, 2), of ``size`` (one, or one each)."""
+    places = np.empty((0, 2)) if seeds is None else np.asarray(seeds, dtype=float)
+    return Body(contour, SizeField(places, np.broadcast_to(size, len(places)).astype(float), coarse))
+
+
+def mean(field: ng.CoefficientFunction, body: Body, edge: str) -> float:
+    """Mean of a field along the named edge of the undeformed outline."""
+    where = ng.ds(definedon=body.boundary((edge,)))
+    return float(ng.Integrate(field * where, body.mesh) / ng.Integrate(ng.CF(1.0) * where, body.mesh))

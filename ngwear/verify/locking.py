@@ -1,0 +1,65 @@
+"""No locking: the error on a coarse mesh does not grow with K/G.
+
+Quarter of a ring (a = 1 mm, b = 2 mm, plane strain, G = 1 MPa) with a pressure in the bore that expands
+it by 0.01 %, elements of 0.4 mm, K/G from 1e2 to 1e5. Reference: Lamé (Timoshenko & Goodier,
+*Theory of Elasticity*, section 28), ``u = (p a^2 / (b^2 - a^2)) (R / (2 (K + G/3)) + b^2 / (2 G R))``,
+exact for every K/G. Displacements of order 1 without an unknown pressure would be too stiff by a factor
+that grows with K/G; here the relative L2 error of the displacement stays where it is.
+"""
+
+from __future__ import annotations
+
+import math
+
+import ngsolve as ng
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.elasticity import Elasticity
+from ngwear.effects.fluid_pressure import FluidPressure
+from ngwear.equilibrium.newton import NewtonOptions
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.stepping import StepOptions, advance
+from ngwear.fields.kinematics import PlaneStrain
+from ngwear.materials import NeoHooke
+from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.builders import meshed, quarter_ring
+
+INNER, OUTER, SHEAR, STRAIN = 1.0, 2.0, 1.0, 1e-4
+SIZE = 0.4
+RATIOS = (1e2, 1e3, 1e4, 1e5)
+TOLERANCE, GROWTH = 5e-3, 1.1
+
+
+def displacement_error(ratio: float) -> float:
+    """Relative L2 error of the displacement for K/G = ``ratio``."""
+    a, b, bulk = INNER, OUTER, ratio * SHEAR
+    uniform, shearing = 1 / (2 * (bulk + SHEAR / 3)), b**2 / (2 * SHEAR)
+    factor = STRAIN * a / (uniform * a + shearing / a)
+    pressure = factor * (b**2 - a**2) / a**2
+    fluid = FluidPressure(("bore",), ("bore",), ())
+    problem = Problem(
+        meshed(quarter_ring(a, b), SIZE),
+        PlaneStrain(),
+        [Elasticity(NeoHooke(shear=SHEAR, bulk_modulus=bulk)), fluid],
+        supports=[Support(("along x",), x=False), Support(("along y",), y=False)],
+    )
+    advance(problem, {"fluid pressure [MPa]": pressure}, StepOptions(newton=NewtonOptions(tolerance=1e-11)))
+    radius2 = ng.x**2 + ng.y**2
+    exact = factor * (uniform + shearing / radius2) * ng.CF((ng.x, ng.y))
+    off = problem.fields[DISPLACEMENT] - exact
+    measure, mesh = ng.dx(bonus_intorder=4), problem.body.mesh
+    return math.sqrt(ng.Integrate(off * off * measure, mesh) / ng.Integrate(exact * exact * measure, mesh))
+
+
+def run() -> list[Check]:
+    """The error for each K/G, and how much it grows from the softest to the stiffest."""
+    checks, errors = [], []
+    total = Stopwatch()
+    for ratio in RATIOS:
+        clock = Stopwatch()
+        errors.append(displacement_error(ratio))
+        name = f"relative L2 error of the displacement at K/G = {ratio:.0e} [-]"
+        checks.append(Check("locking", name, errors[-1], 0.0, TOLERANCE, clock.seconds))
+    name = f"error at K/G = {RATIOS[-1]:.0e} over that at {RATIOS[0]:.0e} [-]"
+    checks.append(Check("locking", name, errors[-1] / errors[0], GROWTH, 0.0, total.seconds, bound="below"))
+    return checks

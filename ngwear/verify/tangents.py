@@ -1,0 +1,142 @@
+"""Every term's tangent against central differences of its residual.
+
+At a smooth, random, admissible state x and for a random direction d, ``K(x) d`` is compared with
+``(R(x + s d) - R(x - s d)) / (2 s)``, s = 1e-5: norm of the difference over norm of K d, the largest over the
+unknowns' rows (displacement, pressures, travel), so that none hides another; the reference is 0. Strains
+are near 10 %. Contact is loaded left of the middle and open right of it; the change of state is too small
+to carry an integration point across. What a solve holds fixed (the stretch in the wear compliance, the
+wetted part of the outline) is fixed here.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.contact import Contact
+from ngwear.effects.elasticity import PRESSURE, Elasticity
+from ngwear.effects.fluid_pressure import FluidPressure
+from ngwear.effects.friction import FullSliding
+from ngwear.equilibrium.problem import Problem
+from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain
+from ngwear.geometry.body import Body
+from ngwear.materials import MooneyRivlin, NeoHooke
+from ngwear.surfaces import Cylinder, Plane, RigidSurface
+from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.builders import meshed, rectangle
+
+STEP, TOLERANCE = 1e-5, 1e-6
+WIDTH, BOTTOM, TOP, SIZE = 4.0, 1.0, 3.0, 0.5
+MATERIALS = {
+    "neo-Hooke": NeoHooke(shear=1.5, bulk_modulus=1000.0),
+    "Mooney-Rivlin": MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
+}
+KINEMATICS = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
+SURFACES = {
+    "plane": Plane(point=(WIDTH / 2, TOP), normal_vector=(0.3, -1.0)),
+    "cylinder": Cylinder(centre=(0.5, TOP + 2.5), radius=3.0),
+}
+
+
+class _UnknownsOf(Term):
+    """A contact's unknowns without its energy: a term that is built on them is seen alone."""
+
+    def __init__(self, contact: Contact) -> None:
+        super().__init__()
+        self.contact = contact
+
+    def spaces(self, body: Body) -> dict[str, ng.FESpace]:
+        return self.contact.spaces(body)
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        """Add nothing."""
+
+
+def _set_state(problem: Problem, rng: np.random.Generator) -> None:
+    """Smooth waves for the displacement and every pressure, 0.05 mm for a surface's travel."""
+
+    def wave(mean: float, size: float) -> ng.CoefficientFunction:
+        kx, ky, phase = rng.uniform(0.5, 1.5), rng.uniform(0.5, 1.5), rng.uniform(0, 2 * np.pi)
+        return mean + size * ng.sin(kx * ng.x + ky * ng.y + phase)
+
+    for name, field in problem.fields.items():
+        if name == DISPLACEMENT:
+            field.Set(ng.CF((wave(0, 0.1), wave(0, 0.1))))
+        elif name == PRESSURE:
+            field.Set(wave(0, 1))
+        elif field.space.ndof == 1:
+            field.vec[0] = 0.05
+        else:
+            field.Set(wave(1, 0.5), definedon=problem.body.boundary(("top",)))
+
+
+def tangent_error(problem: Problem, rng: np.random.Generator) -> float:
+    """Largest relative difference over the unknowns' rows at the problem's state."""
+    state = problem.state.vec
+    direction, product, ahead, behind = (state.CreateVector() for _ in range(4))
+    direction.FV().NumPy()[:] = rng.uniform(-1, 1, len(direction))
+    problem.form.AssembleLinearization(state)
+    product.data = problem.form.mat * direction
+    moved = state.CreateVector()
+    moved.data = state + STEP * direction
+    problem.form.Apply(moved, ahead)
+    moved.data = state - STEP * direction
+    problem.form.Apply(moved, behind)
+    exact = product.FV().NumPy()
+    off = (ahead.FV().NumPy() - behind.FV().NumPy()) / (2 * STEP) - exact
+    errors = []
+    for name in problem.names:
+        rows = problem.part(name)
+        # Rows in which the term says nothing are measured against the whole.
+        scale = np.linalg.norm(exact[rows]) or np.linalg.norm(exact)
+        errors.append(np.linalg.norm(off[rows]) / scale)
+    return float(max(errors))
+
+
+def _contact(surface: RigidSurface, forced: bool, wear: float) -> Contact:
+    contact = Contact("rigid", ("top",), surface, force_controlled=forced, modulus=1.5)
+    contact.load.Set(2.0 if forced else 0.05)
+    contact.compliance.Set(wear)
+    return contact
+
+
+def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
+    for (kin, kinematics), (name, material) in itertools.product(KINEMATICS.items(), MATERIALS.items()):
+        yield f"elasticity, {name}, {kin}", kinematics, [Elasticity(material)]
+    for (kin, kinematics), (name, surface) in itertools.product(KINEMATICS.items(), SURFACES.items()):
+        for forced, wear in itertools.product((False, True), (0.0, 0.02)):
+            how = f"{'force' if forced else 'displacement'}{' and wear' if wear else ''}"
+            yield f"contact, {name}, {how}, {kin}", kinematics, [_contact(surface, forced, wear)]
+        for forced in (False, True):
+            how = "force" if forced else "displacement"
+            contact = _contact(surface, forced, 0.0)
+            yield (
+                f"full sliding, {name}, {how}, {kin}",
+                kinematics,
+                [_UnknownsOf(contact), FullSliding(contact, 0.8)],
+            )
+    for kin, kinematics in KINEMATICS.items():
+        fluid = FluidPressure(("right", "top"), ("right",), ())
+        fluid.pressure.Set(2.0)
+        yield f"fluid pressure, {kin}", kinematics, [fluid]
+
+
+def run() -> list[Check]:
+    """One check a term and variant."""
+    body = meshed(rectangle((0.0, WIDTH), (BOTTOM, TOP)), SIZE)
+    checks = []
+    for label, kinematics, terms in _cases():
+        clock, rng = Stopwatch(), np.random.default_rng(7)
+        problem = Problem(body, kinematics, terms)
+        _set_state(problem, rng)
+        for term in terms:
+            term.prepare()
+            if isinstance(term, FluidPressure):
+                term.wetted.Set(0.5 + 0.5 * ng.sin(ng.x + ng.y))
+        error = tangent_error(problem, rng)
+        checks.append(Check("tangents", f"{label} [-]", error, 0.0, TOLERANCE, clock.seconds))
+    return checks

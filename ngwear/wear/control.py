@@ -1,0 +1,56 @@
+"""How many cycles the next step may take."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+GROWTH = 3.0
+SAFETY = 0.9
+
+
+@dataclass
+class JumpControl:
+    """Choose the jump from the embedded pair of backward Euler and the trapezoidal rule.
+
+    Their difference over a step, ``e = k ds (P_old - P_new) / 2``, is measured as an area (L1 norm over the
+    outline: in the maximum norm a point that has just come into contact would keep the step small for
+    ever), relative to the area that the step removes. That ratio is of first order in the jump, so
+
+        n_new = 0.9 n tolerance / ratio,   growth at most 3.
+
+    Parameters
+    ----------
+    tolerance : float
+        Relative error of worn area [-].
+    cycles : int
+        Cycles of the next step.
+    longest : int
+    """
+
+    tolerance: float
+    cycles: int = 1
+    longest: int = 1000
+
+    def accepts(self, ratio: float, cycles: int) -> bool:
+        """Whether a step with this error ratio stands; single cycles always do."""
+        return cycles == 1 or not ratio > 2 * self.tolerance
+
+    def update(self, ratio: float, cycles: int) -> None:
+        """Set the next number of cycles after a step of ``cycles``; ``ratio`` is nan if it is not known yet."""
+        if math.isnan(ratio):
+            factor = 1.0
+        elif ratio == 0:
+            factor = GROWTH
+        else:
+            factor = min(GROWTH, max(0.3, SAFETY * self.tolerance / ratio))
+        self.cycles = int(min(self.longest, max(1, math.floor(factor * cycles + 1e-9))))
+
+    def cut(self, cycles: int) -> None:
+        """Halve the step after a failure."""
+        self.cycles = max(1, cycles // 2)
