@@ -18,7 +18,7 @@ def rectangle(x: tuple[float, float], y: tuple[float, float]) -> Contour:
 
 def quarter_ring(inner: float, outer: float) -> Contour:
     """Quarter of a ring around the origin with the edges bore and outside, and the cuts along x and along y."""
-    n = 60  # segments an arc: the spline is then within 1e-9 of the circle
+    n = 60  # segments an arc: the spline is then within 3e-8 radii of the circle
     angle = np.linspace(0, np.pi / 2, n + 1)
     arc = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     corners = np.zeros(2 * n + 2, dtype=bool)
