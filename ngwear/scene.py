@@ -178,6 +178,25 @@ class Wear:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Save:
+    """What a run keeps besides one line a step.
+
+    Parameters
+    ----------
+    strokes : tuple of int
+        Strokes that a jump must not pass over, so that outline and pressure are kept just there.
+    vtk : bool
+        Whether the deformed mesh is written for ParaView at these strokes and at the end.
+    """
+
+    strokes: tuple[int, ...] = ()
+    vtk: bool = False
+
+    def __post_init__(self) -> None:
+        _require(all(n > 0 for n in self.strokes), "save.strokes", self.strokes, "must be whole numbers above 0")
+
+
+@dataclass(frozen=True, kw_only=True)
 class Scene:
     """Everything that a run needs.
 
@@ -197,6 +216,7 @@ class Scene:
     supports: tuple[SupportSpec, ...] = ()
     accuracy: Accuracy = field(default_factory=Accuracy)
     wear: Wear = field(default_factory=Wear)
+    save: Save = field(default_factory=Save)
 
     def __post_init__(self) -> None:
         known = self.contour.edge_names

@@ -11,7 +11,7 @@ from typing import Any
 from ngwear.errors import SceneError
 from ngwear.geometry.contour_files import read_contour
 from ngwear.materials import Hyperelastic, MooneyRivlin, NeoHooke
-from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Program, Scene, Stroke, SupportSpec, Wear
+from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
 KINDS = {"axisymmetric": True, "plane strain": False}
@@ -54,7 +54,7 @@ def read_scene(path: Path | str) -> Scene:
         raise SceneError("scene", str(path), f"cannot be read: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise SceneError("scene", str(path), f"is not valid TOML: {error}") from None
-    allowed = {"scene", "contour", "material", "contact", "fluid", "support", "program", "accuracy", "wear"}
+    allowed = {"scene", "contour", "material", "contact", "fluid", "support", "program", "accuracy", "wear", "save"}
     _known("", data, allowed)
     head = _table(data, "scene")
     _known("scene.", head, {"name", "kind"})
@@ -74,6 +74,7 @@ def read_scene(path: Path | str) -> Scene:
         program=_program(_table(data, "program")),
         accuracy=_dataclass(Accuracy, "accuracy", data.get("accuracy", {})),
         wear=_dataclass(Wear, "wear", data.get("wear", {})),
+        save=_dataclass(Save, "save", data.get("save", {})),
     )
 
 
@@ -130,6 +131,10 @@ def _typed(place: str, value: Any, kind: str) -> Any:
     if kind.startswith("tuple[str"):
         if isinstance(value, str) or not all(isinstance(v, str) for v in value):
             raise SceneError(place, value, 'must be a list of names, such as ["lip"]')
+        return tuple(value)
+    if kind.startswith("tuple[int"):
+        if not isinstance(value, list) or not all(isinstance(v, int) and not isinstance(v, bool) for v in value):
+            raise SceneError(place, value, "must be a list of whole numbers, such as [50, 100]")
         return tuple(value)
     if kind == "bool" and not isinstance(value, bool):
         raise SceneError(place, value, "must be true or false")

@@ -141,6 +141,23 @@ class Stage:
             low, high = (low, middle) if smallest(middle) >= 0 else (middle, high)
         return high
 
+    def forces(self) -> dict[str, Array]:
+        """Resultants on the part in the present state, (x, y) [N, or N/mm in plane strain].
+
+        Contact pressure and friction by contact, the fluid, and in axisymmetry the hoop tension's radial
+        resultant; at equilibrium they add up to zero, but for what supports carry.
+        """
+        found = {}
+        for name, contact in self.contacts.items():
+            found[name] = contact.force()
+            if name in self.frictions:
+                found[f"{name} friction"] = self.frictions[name].force()
+        if self.fluid is not None:
+            found["fluid"] = self.fluid.force()
+        if self.scene.axisymmetric:
+            found["hoop"] = np.array([0.0, -self.elasticity.hoop_force()])
+        return found
+
     def wanted_size(self, phases: list[Array]) -> SizeField:
         """Element sizes for the present contacts: the patch where a followed one carries or nearly carries load.
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import logging
 import math
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.effects.contact_profile import ContactProfile
 from ngwear.equilibrium.carry import carry
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
@@ -81,6 +83,7 @@ class State:
     ledger: Ledger = field(default_factory=Ledger)
     work: Work = field(default_factory=Work)
     depth_error: Array | None = None
+    reports: list[StrokeReport] = field(default_factory=list)
 
     def __getstate__(self) -> dict[str, Any]:
         saved = dict(self.__dict__)
@@ -99,22 +102,37 @@ class State:
 
 @dataclass(frozen=True)
 class StrokeReport:
-    """One solved stroke, seen just after its equilibrium and before its wear moves the outline.
+    """One solved stroke: its equilibrium, and the outline after its wear.
 
     Attributes
     ----------
     phase : int
         Which stroke of the cycle.
-    last_stroke : int
-        Number of the last stroke that this solve stands for.
-    repeats : int
-        How many strokes of this kind it stands for.
+    last_stroke, repeats : int
+        Number of the last stroke that this solve stands for, and how many of its kind it stands for.
+    iterations : int
+        Newton iterations.
+    contacts : dict of str to ContactProfile
+        The followed contacts at equilibrium.
+    forces : dict of str to array, shape (2,)
+        Resultants on the part [N, or N/mm].
+    leaks : bool
+        Whether the fluid meets no contact.
+    contour : Contour
+        Outline after the stroke's wear.
+    ledger : Ledger
+        Book after the stroke's wear.
     """
 
     phase: int
     last_stroke: int
     repeats: int
     iterations: int
+    contacts: dict[str, ContactProfile]
+    forces: dict[str, Array]
+    leaks: bool
+    contour: Contour
+    ledger: Ledger
 
 
 class Stepper:
@@ -123,15 +141,12 @@ class Stepper:
     Parameters
     ----------
     scene : Scene
-    on_stroke : callable or None
-        Called with (state, StrokeReport) at each equilibrium of the cycle, before the outline moves.
     on_mount : callable or None
         Called with the fraction of the mounting that is done.
     """
 
-    def __init__(self, scene: Scene, *, on_stroke: Any = None, on_mount: Any = None) -> None:
+    def __init__(self, scene: Scene, *, on_mount: Callable[[float], None] | None = None) -> None:
         self.scene = scene
-        self.on_stroke = on_stroke or (lambda state, report: None)
         self.on_mount = on_mount or (lambda fraction: None)
         self.worn_edges = tuple(e for c in scene.contacts if c.specific_wear_rate > 0 for e in c.edges)
         self._warn_if_unstable()
@@ -170,8 +185,10 @@ class Stepper:
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
         while state.stage.outgrown([p.vector for p in state.phases]) and state.ledger.remeshes < 4:
             self._remesh(state)
+            state.reports = []
             for i, stroke in enumerate(scene.program.cycle):
-                self._solve_phase(state, i, stroke)
+                iterations = self._solve_phase(state, i, stroke)
+                state.reports.append(self._observe(state, i, iterations))
             self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
         self.on_mount(1.0)
         return state
@@ -211,7 +228,8 @@ class Stepper:
         """
         program = self.scene.program
         while True:
-            left = math.ceil((program.strokes - state.strokes) / len(program.cycle))
+            goal = min([m for m in self.scene.save.strokes if m > state.strokes] + [program.strokes])
+            left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
             cycles = 1 if self.scene.wear.step == "each" else min(state.control.cycles, left)
             saved = self._save(state)
             try:
@@ -238,6 +256,7 @@ class Stepper:
             "contour": state.contour,
             "phases": [replace(p) for p in state.phases],
             "strokes": state.strokes,
+            "reports": state.reports,
             "ledger": replace(state.ledger),
             "depth_error": None if state.depth_error is None else state.depth_error.copy(),
         }
@@ -253,6 +272,7 @@ class Stepper:
         kinds = len(program.cycle)
         first = state.strokes % kinds
         done = state.strokes
+        state.reports = []
         worn_before, error_before, known = state.ledger.worn, state.ledger.area_error, True
         for i in [(first + k) % kinds for k in range(kinds)]:
             stroke = program.cycle[i]
@@ -263,9 +283,18 @@ class Stepper:
                 break
             distance = repeats * stroke.travel
             iterations = self._solve_phase(state, i, stroke, distance=distance, repeats=repeats)
+            seen = self._observe(state, i, iterations)
             state.strokes += repeats
-            self.on_stroke(state, StrokeReport(i, state.strokes, repeats, iterations))
             known &= self._wear(state, i, distance)
+            state.reports.append(
+                replace(
+                    seen,
+                    last_stroke=state.strokes,
+                    repeats=repeats,
+                    contour=state.contour,
+                    ledger=replace(state.ledger),
+                )
+            )
         self._remesh_if_needed(state)
         worn = state.ledger.worn - worn_before
         if not known:
@@ -295,6 +324,21 @@ class Stepper:
         rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
         state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None)
         return work.iterations
+
+    def _observe(self, state: State, index: int, iterations: int) -> StrokeReport:
+        """What there is to see at the stroke's equilibrium."""
+        stage = state.stage
+        return StrokeReport(
+            phase=index,
+            last_stroke=state.strokes,
+            repeats=0,
+            iterations=iterations,
+            contacts={spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed},
+            forces=stage.forces(),
+            leaks=stage.fluid is not None and stage.fluid.leaks,
+            contour=state.contour,
+            ledger=replace(state.ledger),
+        )
 
     def _approach(self, state: State, index: int, stroke: Any, work: Work) -> None:
         """Reach a stroke's equilibrium in steps: from its last state, else from the stroke before it in the cycle."""

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import ngsolve as ng
 
-from ngwear.effects.base import Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.fields.kinematics import Kinematics
 from ngwear.geometry.body import Body
 from ngwear.materials import Hyperelastic
 
@@ -39,15 +43,24 @@ class Elasticity(Term):
     def spaces(self, body: Body) -> dict[str, ng.FESpace]:
         return {PRESSURE: ng.H1(body.mesh, order=self.order - 1)}
 
-    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
-        self._state = unknowns.state
-        u, p = unknowns.u, unknowns.trial[PRESSURE]
-        kinematics = unknowns.kinematics
-        i1, i2, j = kinematics.invariants(u, ng.Grad(u))
-        psi = self.material.isochoric_energy(j ** (-2 / 3) * i1, j ** (-4 / 3) * i2)
+    def energy(self, kinematics: Kinematics, u: Any, p: Any, *, hoop: Any = None) -> Any:
+        """Energy per reference volume [MPa] of a trial or known displacement and volumetric stress."""
+        i1, i2, j = kinematics.invariants(u, ng.Grad(u), hoop=hoop)
         pointwise, rest = self.split
-        psi = psi + pointwise / 2 * (j - 1) ** 2 + p * (j - 1) - p * p / (2 * rest)
-        form += ng.Variation((psi * kinematics.weight).Compile() * ng.dx)
+        psi = self.material.isochoric_energy(j ** (-2 / 3) * i1, j ** (-4 / 3) * i2)
+        return psi + pointwise / 2 * (j - 1) ** 2 + p * (j - 1) - p * p / (2 * rest)
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        self._state, self._kinematics, self._body = unknowns.state, unknowns.kinematics, unknowns.body
+        psi = self.energy(unknowns.kinematics, unknowns.u, unknowns.trial[PRESSURE])
+        form += ng.Variation((psi * unknowns.kinematics.weight).Compile() * ng.dx)
+
+    def hoop_force(self) -> float:
+        """Radial resultant of the hoop tension of an axisymmetric part, ``2 pi int P_hoop dA`` [N]."""
+        u, p = self._state[DISPLACEMENT], self._state[PRESSURE]
+        hoop = self._kinematics.hoop_stretch(u).MakeVariable()
+        stress = self.energy(self._kinematics, u, p, hoop=hoop).Diff(hoop)
+        return 2 * math.pi * ng.Integrate(stress, self._body.mesh, order=6)
 
     def volume_ratio(self) -> ng.CoefficientFunction:
         """J = 1 + p / K of the present state [-]."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
 from ngwear.effects.contact import Contact
 from ngwear.errors import SceneError
 from ngwear.geometry.body import Body
@@ -50,7 +50,7 @@ class FluidPressure(Term):
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         body = unknowns.body
         region = body.boundary(self.edges)
-        self._body, self._state = body, unknowns.state
+        self._body, self._unknowns, self._region = body, unknowns, region
         self.wetted = ng.GridFunction(ng.H1(body.mesh, order=1))
         u, v = unknowns.u, unknowns.v
         area = unknowns.kinematics.area_vector(u, ng.Grad(u).Trace())
@@ -98,3 +98,11 @@ class FluidPressure(Term):
             ends = contact.touching()
             touching[line.vertices[contact.positions[ends]]] = True
         return touching
+
+    def force(self) -> np.ndarray:
+        """Resultant of the fluid on the part; shape (2,) [N], or N/mm in plane strain."""
+        u, kinematics = self._unknowns.state[DISPLACEMENT], self._unknowns.kinematics
+        area = kinematics.area_vector(u, ng.Grad(u))
+        scale = -self.pressure.Get() * self.wetted * kinematics.weight
+        measure = ng.ds(definedon=self._region, bonus_intorder=2)
+        return np.array([ng.Integrate(scale * area[k] * measure, self._body.mesh) for k in range(2)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ngsolve as ng
+import numpy as np
 
 from ngwear.effects.base import Term, Unknowns
 from ngwear.effects.contact import Contact
@@ -45,5 +46,15 @@ class FullSliding(Term):
         v = unknowns.v
         traction = self.coefficient * self.slip * p * unknowns.kinematics.weight
         work = -traction * (tx * v[0] + ty * v[1])
+        self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
+
+    def force(self) -> np.ndarray:
+        """Resultant of the friction on the part; shape (2,) [N], or N/mm in plane strain."""
+        known, contact = self._unknowns, self.contact
+        p = known.state[contact.pressure_name]
+        scale = self.coefficient * self.slip.Get() * p * known.kinematics.weight
+        measure = ng.ds(definedon=known.body.boundary(contact.edges), bonus_intorder=2)
+        tangent = contact.surface.tangent(*contact.place(known.state))
+        return np.array([ng.Integrate(scale * t * measure, known.body.mesh) for t in tangent])

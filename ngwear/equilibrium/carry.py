@@ -69,9 +69,7 @@ def _node_places(problem: Problem) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _neighbours(
-    old: Contact, new: Contact
-) -> tuple[NDArray[np.intp], Array, NDArray[np.bool_], NDArray[np.intp]]:
+def _neighbours(old: Contact, new: Contact) -> tuple[NDArray[np.intp], Array, NDArray[np.bool_], NDArray[np.intp]]:
     """For both ends of each new mesh edge the two nearest old nodes and their weights; and which edges are old ones."""
     places, before = new.end_places(), old.end_places()
     distance, index = cKDTree(old.profile().reference).query(places, k=2)

@@ -27,10 +27,13 @@ class Kinematics(abc.ABC):
     def hoop_stretch(self, u: Any) -> Any:
         """Stretch out of the section's plane: 1, or 1 + u_r / R."""
 
-    def invariants(self, u: Any, grad_u: Any) -> tuple[Any, Any, Any]:
-        """Return I1 and I2 of C = F^T F and J = det F for the gradient ``grad_u`` (2 x 2) of u."""
+    def invariants(self, u: Any, grad_u: Any, *, hoop: Any = None) -> tuple[Any, Any, Any]:
+        """Return I1 and I2 of C = F^T F and J = det F for the gradient ``grad_u`` (2 x 2) of u.
+
+        ``hoop`` stands for the hoop stretch if it is given, to differentiate by it.
+        """
         plane = ng.Id(2) + grad_u
-        hoop = self.hoop_stretch(u)
+        hoop = self.hoop_stretch(u) if hoop is None else hoop
         c = plane.trans * plane
         trace, det = ng.Trace(c), ng.Det(c)
         return trace + hoop * hoop, det + hoop * hoop * trace, ng.Det(plane) * hoop

@@ -1,0 +1,57 @@
+"""Statics against closed forms, finite differences and limits of other programs."""
+
+import subprocess
+import sys
+
+import pytest
+
+from ngwear.errors import SceneError
+from ngwear.verify import verify
+from ngwear.verify.base import Check
+
+STATICS = ("tangents", "convergence", "locking", "hertz", "p1a", "ring")
+
+
+@pytest.mark.parametrize("case", STATICS)
+def test_case_meets_its_reference(case):
+    checks = verify([case])
+    missed = [
+        f"{c.quantity}: {c.value:.8g}, {c.bound} {c.reference:.8g} wanted, error {c.error:.2e} above {c.tolerance:.1e}"
+        for c in checks
+        if not c.passed
+    ]
+    assert checks, f"{case} checks nothing"
+    assert not missed, f"{case}: " + "; ".join(missed)
+
+
+def test_unknown_case_is_refused_and_the_known_ones_named():
+    with pytest.raises(SceneError, match=r"lame.*known: .*hertz.*ring"):
+        verify(["ring", "lame"])
+
+
+def test_listing_the_cases_loads_no_solver():
+    code = "import sys, ngwear.verify as v; sys.exit(not v.CASES or 'ngsolve' in sys.modules)"
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("value", "reference", "options", "error", "passed"),
+    [
+        (101.0, 100.0, {}, 0.01, True),
+        (103.0, 100.0, {}, 0.03, False),
+        (101.0, 100.0, {"absolute": True}, 1.0, False),
+        (0.01, 0.0, {}, 0.01, True),
+        (float("nan"), 1.0, {}, None, False),
+        (2.9, 2.8, {"bound": "above"}, 0.0, True),
+        (2.79, 2.8, {"bound": "above"}, 0.01 / 2.8, False),
+        (float("nan"), 2.8, {"bound": "above"}, None, False),
+        (2.7, 2.8, {"bound": "below"}, 0.0, True),
+        (2.81, 2.8, {"bound": "below"}, 0.01 / 2.8, False),
+    ],
+)
+def test_check_measures_its_error(value, reference, options, error, passed):
+    check = Check("case", "quantity [-]", value, reference, 0.02, 0.0, **options)
+    assert check.passed is passed
+    assert check.as_dict()["passed"] is passed
+    if error is not None:
+        assert check.error == pytest.approx(error)
