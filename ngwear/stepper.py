@@ -375,9 +375,8 @@ class Stepper:
             contact = stage.contacts[spec.name]
             profile = contact.profile()
             ratio = contact.at_nodes(stage.elasticity.volume_ratio())
-            depth = spec.specific_wear_rate * distance * profile.nominal_pressure / ratio
-            share += worn_share(contour, profile, depth)
-            pressure += _at_points(contour, profile, spec.specific_wear_rate * profile.nominal_pressure)
+            share += worn_share(contour, profile, spec.specific_wear_rate * distance * profile.load / ratio)
+            pressure += _at_points(contour, profile, spec.specific_wear_rate * profile.load / profile.weight)
         known = old is not None
         if known:
             half = 0.5 * distance * (old - pressure)

@@ -19,7 +19,7 @@ class Zone:
     Attributes
     ----------
     start, end : array, shape (2,)
-        Deformed coordinates of its ends [mm]; the ends lie between nodes, where P² falls to zero.
+        Deformed coordinates of its ends [mm], between nodes: where the gap opens.
     peak : float
         Largest Cauchy pressure [MPa].
     width : float
@@ -39,8 +39,8 @@ class Zone:
 class ContactProfile:
     """Nodal values along a contact's edges, in the order of the outline.
 
-    The unknown pressure jumps between mesh edges; the nodal one is its lumped L2 projection
-    ``P_i = int P phi_i ds / int phi_i ds``, which keeps the load and damps the jumps.
+    The unknown pressure jumps between mesh edges; the nodal one is the mean of both sides, each weighted by
+    the other side's length: exact for a linear pressure on any mesh.
 
     Attributes
     ----------
@@ -56,6 +56,8 @@ class ContactProfile:
         Distance from the surface [mm].
     weight : array, shape (k,)
         Reference length that belongs to each node, int phi_i ds [mm].
+    load : array, shape (k,)
+        int P phi_i ds of the unknown pressure [N/mm]: what wears.
     edges : array of int, shape (m, 2)
         The two nodes of each mesh edge.
     """
@@ -67,6 +69,7 @@ class ContactProfile:
     pressure: Array
     gap: Array
     weight: Array
+    load: Array
     edges: NDArray[np.intp]
 
     @classmethod
@@ -80,7 +83,11 @@ class ContactProfile:
         first, second = pressure.T
         share = np.stack([2 * first + second, first + 2 * second], axis=1) * length[:, None] / 6
         weight = np.bincount(node.ravel(), np.repeat(length / 2, 2), len(t))
-        nominal = np.maximum(np.bincount(node.ravel(), share.ravel(), len(t)) / weight, 0.0)
+        load = np.maximum(np.bincount(node.ravel(), share.ravel(), len(t)), 0.0)
+        nearness = np.repeat(1 / length, 2)
+        nominal = np.bincount(node.ravel(), pressure.ravel() * nearness, len(t))
+        nominal = np.maximum(nominal / np.bincount(node.ravel(), nearness, len(t)), 0.0)
+        nominal[load <= 0] = 0.0
         return cls(
             t=t,
             reference=body.contour.at(t),
@@ -89,6 +96,7 @@ class ContactProfile:
             pressure=nominal / cls.average(body, positions, stretch),
             gap=cls.average(body, positions, gap),
             weight=weight,
+            load=load,
             edges=node,
         )
 
@@ -122,17 +130,21 @@ class ContactProfile:
         return Zone(start, end, float(self.pressure[a:b].max()), width, slice(a, b))
 
     def _edge(self, node: int, step: int) -> Array:
-        """Where P² would fall to zero beyond the outermost loaded node, at most one mesh edge away."""
-        ahead, behind = node + step, node - step
-        if not 0 <= ahead < len(self.t):
+        """Where the gap closes beyond the outermost loaded node.
+
+        Outside a contact the gap grows with the power 3/2 of the distance, so that gap^(2/3) is linear in it; its
+        zero lies between the loaded and the first open node.
+        """
+        first, second = node + step, node + 2 * step
+        if not 0 <= first < len(self.t):
             return self.place[node]
+        near = np.linalg.norm(self.place[first] - self.place[node])
         fraction = 0.5
-        if 0 <= behind < len(self.t) and self.pressure[behind] > self.pressure[node]:
-            slope = self.pressure[behind] ** 2 - self.pressure[node] ** 2
-            inner = np.linalg.norm(self.place[node] - self.place[behind])
-            outer = np.linalg.norm(self.place[ahead] - self.place[node])
-            fraction = float(np.clip(self.pressure[node] ** 2 / slope * inner / outer, 0.0, 1.0))
-        return self.place[node] + fraction * (self.place[ahead] - self.place[node])
+        if 0 <= second < len(self.t) and self.gap[second] > self.gap[first] > 0:
+            rise = self.gap[second] ** (2 / 3) - self.gap[first] ** (2 / 3)
+            apart = np.linalg.norm(self.place[second] - self.place[first])
+            fraction = float(np.clip(1 - self.gap[first] ** (2 / 3) / rise * apart / near, -1.0, 1.0))
+        return self.place[node] + fraction * (self.place[first] - self.place[node])
 
 
 def _nodes(body: Body, positions: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp]]:

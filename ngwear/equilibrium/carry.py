@@ -17,6 +17,7 @@ from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
 
 Array = NDArray[np.float64]
+LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled
 
 
 def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
@@ -47,9 +48,44 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
             target[new.part(after.pressure_name)] = after.pressure_vector(ends)
             if after.force_controlled:
                 target[new.part(after.travel_name)] = state[old.part(before.travel_name)]
-        carried.append(target.copy())
+        new.state.vec.data = out
+        _unfold(new)
+        carried.append(new.state.vec.FV().NumPy().copy())
     old.state.vec.FV().NumPy()[:] = keep
     return carried
+
+
+def _unfold(problem: Problem) -> None:
+    """Refill the displacement harmonically around elements that interpolation has crushed or turned over."""
+    mesh, u = problem.body.mesh, problem.fields[DISPLACEMENT]
+    jacobian = ng.Det(ng.Id(2) + ng.Grad(u)) * problem.kinematics.hoop_stretch(u)
+    rule = ng.IntegrationRule(ng.TRIG, 4)
+    points = mesh.MapToAllElements(rule, ng.VOL)
+    triangles = mesh.ngmesh.Elements2D().NumPy()["nodes"][:, :3].astype(int) - 1
+    for rings in (1, 2, 3, 4):
+        lowest = np.asarray(jacobian(points)).reshape(len(triangles), -1).min(axis=1)
+        marked = lowest < LOWEST_JACOBIAN
+        if not marked.any():
+            return
+        for _ in range(rings):
+            touched = np.zeros(mesh.nv, dtype=bool)
+            touched[triangles[marked]] = True
+            marked = touched[triangles].any(axis=1)
+        _fill_harmonically(u, marked)
+
+
+def _fill_harmonically(u: ng.GridFunction, marked: NDArray[np.bool_]) -> None:
+    space = u.space
+    free = ng.BitArray(space.FreeDofs())
+    for element in space.mesh.Elements(ng.VOL):
+        if not marked[element.nr]:
+            for dof in space.GetDofNrs(ng.ElementId(ng.VOL, element.nr)):
+                free[dof] = False
+    v, w = space.TnT()
+    matrix = ng.BilinearForm(ng.InnerProduct(ng.Grad(v), ng.Grad(w)) * ng.dx).Assemble().mat
+    residual = u.vec.CreateVector()
+    residual.data = matrix * u.vec
+    u.vec.data -= matrix.Inverse(free, inverse="sparsecholesky") * residual
 
 
 def _contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:

@@ -13,18 +13,18 @@ from ngwear.geometry.contour import Contour
 Array = NDArray[np.float64]
 
 
-def worn_share(contour: Contour, profile: ContactProfile, depth: Array) -> Array:
-    """Area that each contour point loses when the nodes of a contact lose ``depth`` [mm] per reference area.
+def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
+    """Share out the worn area of a contact's mesh nodes among the outline's points.
 
-    ``W = k P ds / J`` with the nominal pressure P (Archard 1953 per reference area, so that a stretched lip
-    loses the right volume). W is linear between mesh nodes; its integral is kept exactly.
+    Archard's law (J. Appl. Phys. 24 (1953) 981) per reference area, ``W = k P ds / J`` with the nominal
+    pressure P, so that a stretched lip loses the right volume. The sum is kept exactly.
 
     Parameters
     ----------
     contour : Contour
     profile : ContactProfile
-    depth : array, shape (k,)
-        W at the profile's nodes.
+    amount : array, shape (k,)
+        ``int W phi_i ds`` at the profile's nodes [mm²].
 
     Returns
     -------
@@ -35,14 +35,13 @@ def worn_share(contour: Contour, profile: ContactProfile, depth: Array) -> Array
     share = np.zeros(n)
     near = np.rint(profile.t)
     on_point = np.abs(profile.t - near) < 1e-9
-    np.add.at(share, near[on_point].astype(int) % n, (depth * profile.weight)[on_point])
-    between = np.flatnonzero(~on_point & (depth > 0))
+    np.add.at(share, near[on_point].astype(int) % n, amount[on_point])
+    between = np.flatnonzero(~on_point & (amount > 0))
     low = np.floor(profile.t[between]).astype(int)
     fraction = profile.t[between] - low
-    amount = (depth * profile.weight)[between]
-    np.add.at(share, low % n, (1 - fraction) * amount)
-    np.add.at(share, (low + 1) % n, fraction * amount)
-    return _spread(share, contour, profile, depth)
+    np.add.at(share, low % n, (1 - fraction) * amount[between])
+    np.add.at(share, (low + 1) % n, fraction * amount[between])
+    return _spread(share, contour, profile, amount / profile.weight)
 
 
 def _spread(share: Array, contour: Contour, profile: ContactProfile, depth: Array) -> Array:
