@@ -27,7 +27,9 @@ from ngwear.wear.control import JumpControl
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
-REMESH_DEPTH = 0.4  # of the patch's edge: how far the outline may move on one mesh
+AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
+SHORTEST = 0.4  # of its length when meshed: how short a segment may become before the outline is tidied
+REMESH_DEPTH = 1.0  # of the patch's edge: how far the outline may move on one mesh
 
 
 @dataclass
@@ -61,6 +63,8 @@ class Ledger:
         Area taken off the outline's polygon [mm²].
     area_error : float
         Sum of the steps' embedded errors of worn area [mm²].
+    depth_error : float
+        Largest sum of the embedded errors of depth at one point of the outline [mm].
     remesh_jump : float
         Largest relative change of the section's area in a remesh [-].
     """
@@ -68,6 +72,7 @@ class Ledger:
     worn: float = 0.0
     removed: float = 0.0
     area_error: float = 0.0
+    depth_error: float = 0.0
     remesh_jump: float = 0.0
     remeshes: int = 0
 
@@ -382,11 +387,17 @@ class Stepper:
             half = 0.5 * distance * (old - pressure)
             width = 0.5 * (contour.lengths + np.roll(contour.lengths, 1))
             state.ledger.area_error += float(np.abs(half) @ width)
-            state.depth_error += half
+            state.depth_error += np.abs(half)
+            state.ledger.depth_error = float(state.depth_error.max())
         state.phases[index].pressure = pressure
         new = recede(contour, share, self.worn_edges)
         state.ledger.worn += float(share.sum())
-        state.ledger.removed += contour.area - new.area
+        removed = contour.area - new.area
+        if abs(removed - share.sum()) > AREA_GATE * share.sum():
+            raise GeometryError(
+                f"the outline lost {removed:.4g} mm² where the law wears {share.sum():.4g} mm²: it had to be healed too far"
+            )
+        state.ledger.removed += removed
         if len(new) == len(contour):
             try:
                 stage.body.move_to(new)
@@ -400,7 +411,8 @@ class Stepper:
         body = state.stage.body
         moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
         outgrown = state.stage.outgrown([p.vector for p in state.phases])
-        if outgrown or moved > REMESH_DEPTH * self.scene.accuracy.patch:
+        shrunk = np.min(body.contour.lengths / body.base.lengths) < SHORTEST
+        if outgrown or shrunk or moved > REMESH_DEPTH * self.scene.accuracy.patch:
             self._remesh(state)
 
     def _remesh(self, state: State, contour: Contour | None = None) -> None:

@@ -13,14 +13,14 @@ from pathlib import Path
 import numpy as np
 
 TIP = (3.15, 10.2)  # lip tip: axial position and radius [mm]
-TIP_RADIUS = 0.025
+TIP_RADIUS = 0.02
 FLANKS = (24.0, 22.0)  # degrees from the rod axis, air side and sealed side
 PITCH = 0.33
 LEFT = 0.25  # where the first left ridge begins
-LEFT_BASE = (10.535, 10.325)  # radius of the ridge roots at the first and after the last left ridge
+LEFT_BASE = (10.51, 10.315)  # radius of the ridge roots at the first and after the last left ridge
 LEFT_HEIGHT = 0.10
 RIGHT = 3.66
-RIGHT_BASE = (10.34, 10.60)
+RIGHT_BASE = (10.33, 10.60)
 RIGHT_HEIGHT = 0.10
 SPACING = 0.0095  # ridges
 
@@ -84,7 +84,9 @@ def edges() -> list[tuple[str, np.ndarray]]:
     apex = (TIP[0], TIP[1] - apex_drop)
     foot_left = (apex[0] - (left[-1, 1] - apex[1]) / np.tan(alpha), left[-1, 1])
     foot_right = (apex[0] + (right[0, 1] - apex[1]) / np.tan(beta), right[0, 1])
-    lip = rounded([(*left[-1], 0), (*foot_left, 0.1), (*apex, TIP_RADIUS), (*foot_right, 0.1), (*right[0], 0)], TIP_RADIUS / 4)
+    lip = rounded(
+        [(*left[-1], 0), (*foot_left, 0.1), (*apex, TIP_RADIUS), (*foot_right, 0.1), (*right[0], 0)], TIP_RADIUS / 4
+    )
     lip[:, 1] += TIP[1] - lip[:, 1].min()
     lip[0], lip[-1] = left[-1], right[0]
     heel = rounded([(0, 11.4, 0), (0, LEFT_BASE[0], 0.15), (*left[0], 0)], 0.04)

@@ -83,7 +83,8 @@ class ContactProfile:
         first, second = pressure.T
         share = np.stack([2 * first + second, first + 2 * second], axis=1) * length[:, None] / 6
         weight = np.bincount(node.ravel(), np.repeat(length / 2, 2), len(t))
-        load = np.maximum(np.bincount(node.ravel(), share.ravel(), len(t)), 0.0)
+        load = np.bincount(node.ravel(), share.ravel(), len(t))
+        load = np.where(load > 1e-9 * load.max(initial=0.0), load, 0.0)
         nearness = np.repeat(1 / length, 2)
         nominal = np.bincount(node.ravel(), pressure.ravel() * nearness, len(t))
         nominal = np.maximum(nominal / np.bincount(node.ravel(), nearness, len(t)), 0.0)

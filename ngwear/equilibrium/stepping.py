@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
@@ -30,7 +30,7 @@ class StepOptions:
     smallest: float = 1 / 512
     easy: int = 8
     max_updates: int = 8
-    newton: NewtonOptions = NewtonOptions()
+    newton: NewtonOptions = field(default_factory=NewtonOptions)
 
 
 @dataclass

@@ -71,10 +71,8 @@ def _csv(path: Path) -> Contour:
         )
     points = np.array([[float(row["x [mm]"]), float(row["y [mm]"])] for row in rows])
     names = tuple(row["edge"].strip() for row in rows)
-    if "corner" in columns:
-        corners = np.array([bool(int(row["corner"])) for row in rows])
-    else:
-        corners = _sharp(points)
+    marked = "corner" in columns
+    corners = np.array([bool(int(row["corner"])) for row in rows]) if marked else _sharp(points)
     return Contour(points, names, corners, path.name)
 
 

@@ -64,9 +64,10 @@ def _displacement(points: Array, area: Array, contour: Contour, worn_edges: tupl
     chord = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
     inward = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
     wears = contour.on(worn_edges)
-    starts = contour.corners & wears & ~np.roll(wears, 1)  # the segment before is another, unworn edge
-    ends = contour.corners & ~wears & np.roll(wears, 1)
-    for where, neighbour in ((starts, 1), (ends, -1)):
+    sharp = contour.corners & (np.abs(contour.turning) > 0.2)
+    starts = sharp & wears & ~np.roll(wears, 1)  # the segment before is another, unworn edge
+    ends = sharp & ~wears & np.roll(wears, 1)
+    for where, neighbour in ((starts, 1), (ends, -1)):  # slide along the unworn edge
         along = np.roll(points, neighbour, axis=0)[where] - points[where]
         inward[where] = along / np.linalg.norm(along, axis=1)[:, None]
     g = -0.5 * _cross(inward, chord)

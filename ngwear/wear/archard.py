@@ -33,37 +33,29 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
     """
     n = len(contour)
     share = np.zeros(n)
-    near = np.rint(profile.t)
-    on_point = np.abs(profile.t - near) < 1e-9
-    np.add.at(share, near[on_point].astype(int) % n, amount[on_point])
-    between = np.flatnonzero(~on_point & (amount > 0))
-    low = np.floor(profile.t[between]).astype(int)
-    fraction = profile.t[between] - low
-    np.add.at(share, low % n, (1 - fraction) * amount[between])
-    np.add.at(share, (low + 1) % n, fraction * amount[between])
-    return _spread(share, contour, profile, amount / profile.weight)
-
-
-def _spread(share: Array, contour: Contour, profile: ContactProfile, depth: Array) -> Array:
-    """Divide a node's share among the contour points that a coarse mesh edge skips, as W is linear there."""
-    n = len(contour)
-    out = share.copy()
+    depth = np.divide(amount, profile.weight)
     for i, j in profile.edges:
-        a, b = int(np.rint(profile.t[i])), int(np.rint(profile.t[j]))
-        b = b if b > a else b + n
-        wa, wb = depth[i], depth[j]
-        if b - a < 2 or (wa == 0 and wb == 0):
+        if depth[i] == 0 and depth[j] == 0:
             continue
-        length = contour.lengths[np.arange(a, b) % n]
-        total = length.sum()
-        s = np.concatenate([[0.0], np.cumsum(length)]) / total
-        w = (1 - s) * wa + s * wb
-        points = np.arange(a, b + 1) % n
-        out[points[0]] -= wa * total / 2
-        out[points[-1]] -= wb * total / 2
-        np.add.at(out, points[:-1], (2 * w[:-1] + w[1:]) * length / 6)
-        np.add.at(out, points[1:], (w[:-1] + 2 * w[1:]) * length / 6)
-    return out
+        a, b = profile.t[i], profile.t[j]
+        b = b if b > a else b + n
+        # Cut the mesh edge at the outline's points; W is linear along its length.
+        cuts = np.concatenate([[a], np.arange(math.floor(a) + 1, math.ceil(b)), [b]])
+        segment = np.floor(0.5 * (cuts[:-1] + cuts[1:])).astype(int)
+        length = np.diff(cuts) * contour.lengths[segment % n]
+        s = np.concatenate([[0.0], np.cumsum(length)]) / length.sum()
+        w = (1 - s) * depth[i] + s * depth[j]
+        middle = 0.5 * (w[:-1] + w[1:])
+        for point in (segment, segment + 1):
+            ends, inner = _hat(np.stack([cuts[:-1], cuts[1:]]), point), _hat(0.5 * (cuts[:-1] + cuts[1:]), point)
+            np.add.at(share, point % n, length / 6 * (w[:-1] * ends[0] + 4 * middle * inner + w[1:] * ends[1]))
+    total = share.sum()
+    return share * (amount.sum() / total) if total > 0 else share
+
+
+def _hat(t: Array, point: NDArray[np.intp]) -> Array:
+    """Hat functions of contour points at contour parameters."""
+    return np.maximum(1 - np.abs(t - point), 0.0)
 
 
 def critical_distance(element: float, specific_wear_rate: float, plane_strain_modulus: float) -> float:

@@ -1,0 +1,121 @@
+"""The command line: run, verify, explain, plot."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import logging
+import sys
+from pathlib import Path
+from typing import Any
+
+from ngwear import __version__
+from ngwear.errors import NgwearError
+
+OK, BAD_INPUT, GAVE_UP = 0, 2, 3
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="ngwear", description="Friction and abrasive wear of rubber parts.")
+    parser.add_argument("--version", action="version", version=f"ngwear {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True)
+    run = commands.add_parser("run", help="run a scene to its end")
+    run.add_argument("scene", type=Path, metavar="SCENE.toml")
+    run.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
+    run.add_argument("--resume", action="store_true", help="go on with the run in DIR")
+    run.add_argument("--quiet", action="store_true", help="no progress bar")
+    run.set_defaults(do=_run)
+    verify = commands.add_parser("verify", help="compare with references that others derived")
+    verify.add_argument("cases", nargs="*", metavar="CASE")
+    verify.add_argument("--json", action="store_true")
+    verify.set_defaults(do=_verify)
+    explain = commands.add_parser("explain", help="say what a scene simulates and what it leaves out")
+    explain.add_argument("scene", type=Path, metavar="SCENE.toml")
+    explain.add_argument("--json", action="store_true")
+    explain.set_defaults(do=_explain)
+    plot = commands.add_parser("plot", help="draw the figures of a run again")
+    plot.add_argument("folder", type=Path, metavar="DIR")
+    plot.set_defaults(do=_plot)
+    return parser
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run one command; return 0 if it reached its end, 2 for bad input, 3 when it gave up."""
+    logging.basicConfig(level=logging.WARNING, format="ngwear: %(message)s")
+    options = _parser().parse_args(arguments)
+    try:
+        return options.do(options)
+    except NgwearError as error:
+        print(f"ngwear: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("ngwear: interrupted; go on with --resume", file=sys.stderr)
+        return 130
+
+
+def _run(options: argparse.Namespace) -> int:
+    from ngwear.scenefile import read_scene
+
+    scene = read_scene(options.scene)
+    from ngwear.run import COMPLETED, run
+
+    result = run(scene, out=options.out, resume=options.resume, progress=not options.quiet, throw=False)
+    if result.status != COMPLETED:
+        print(f"ngwear: gave up: {result.message}", file=sys.stderr)
+        print(f"ngwear: what was computed until then is in {options.out}", file=sys.stderr)
+        return GAVE_UP
+    if not options.quiet:
+        _print_table(result.summary)
+        print(f"results and figures: {options.out}")
+    return OK
+
+
+def _print_table(values: dict[str, Any]) -> None:
+    for name, value in values.items():
+        if isinstance(value, dict):
+            continue
+        print(f"{name:45s} {value:.6g}" if isinstance(value, float) else f"{name:45s} {value}")
+
+
+def _verify(options: argparse.Namespace) -> int:
+    from ngwear.verify import verify
+
+    checks = verify(options.cases or None)
+    if options.json:
+        print(json.dumps([check.as_dict() for check in checks], indent=2))
+    else:
+        for check in checks:
+            mark = "ok  " if check.passed else "FAIL"
+            print(
+                f"{mark} {check.case:14s} {check.quantity:60s} {check.value:<12.6g} reference {check.reference:<12.6g} "
+                f"error {check.error:.2g} (tolerance {check.tolerance:.2g})"
+            )
+    return OK if all(check.passed for check in checks) else GAVE_UP
+
+
+def _explain(options: argparse.Namespace) -> int:
+    from ngwear.scenefile import read_scene
+
+    scene = read_scene(options.scene)
+    from ngwear.explain import explain
+
+    found = explain(scene)
+    if options.json:
+        print(json.dumps(found, indent=2))
+        return OK
+    for name, value in found.items():
+        if isinstance(value, dict):
+            print(f"{name}:")
+            for key, item in value.items():
+                print(f"  {key:55s} {item:.4g}" if isinstance(item, float) else f"  {key:55s} {item}")
+        else:
+            print(f"{name}: {', '.join(value) if isinstance(value, list) else value}")
+    return OK
+
+
+def _plot(options: argparse.Namespace) -> int:
+    from ngwear.plot import plot
+
+    for path in plot(options.folder):
+        print(path)
+    return OK

@@ -1,0 +1,282 @@
+"""Figures of a run, drawn from its result file alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.errors import ResultError
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+Array = NDArray[np.float64]
+COLOURS = ("#1b6ca8", "#d1495b", "#2e933c", "#8d6a9f", "#e0a030")
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Outline and contact profiles at one solved stroke, as read from ``result.h5``."""
+
+    stroke: int
+    kind: str
+    outline: Array
+    profiles: dict[str, dict[str, Array]]
+    mesh: dict[str, Array]
+
+
+@dataclass(frozen=True)
+class ResultFile:
+    """Contents of ``result.h5``."""
+
+    scene: str
+    outline: Array
+    series: dict[str, Array]
+    snapshots: list[Snapshot]
+
+    @property
+    def kinds(self) -> list[str]:
+        """The strokes of the cycle by name, in their order."""
+        return list(dict.fromkeys(s.kind for s in self.snapshots))
+
+    def at(self, stroke: float, kind: str) -> Snapshot:
+        """The snapshot of a kind whose stroke is nearest."""
+        mine = [s for s in self.snapshots if s.kind == kind]
+        return min(mine, key=lambda s: abs(s.stroke - stroke))
+
+
+def read_result(folder: Path | str) -> ResultFile:
+    """Read a run's ``result.h5``.
+
+    Raises
+    ------
+    ResultError
+        If the file is missing or damaged.
+    """
+    import h5py
+
+    file = Path(folder) / "result.h5"
+    if not file.is_file():
+        raise ResultError(f"{file} does not exist: give the folder of a run that has ended (see ngwear run --out)")
+    try:
+        with h5py.File(file, "r") as h5:
+            snapshots = []
+            for group in h5["strokes"].values():
+                parts = {k: {n: d[()] for n, d in g.items()} for k, g in group.items() if isinstance(g, h5py.Group)}
+                snapshots.append(
+                    Snapshot(
+                        int(group.attrs["stroke"]),
+                        str(group.attrs["kind"]),
+                        group["outline [mm]"][()],
+                        {k: v for k, v in parts.items() if k != "mesh"},
+                        parts.get("mesh", {}),
+                    )
+                )
+            # A column such as "force x [N/mm]" holds a slash, which HDF5 reads as a path.
+            series: dict[str, Array] = {}
+            h5["series"].visititems(
+                lambda name, item: series.__setitem__(name, _column(item)) if isinstance(item, h5py.Dataset) else None
+            )
+            return ResultFile(str(h5.attrs["scene"]), h5["outline/points [mm]"][()], series, snapshots)
+    except (OSError, KeyError, ValueError) as error:
+        raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
+
+
+def _column(item: Any) -> Array:
+    values = item[()]
+    return values.astype(str) if values.dtype.kind in "OS" else values
+
+
+def plot(folder: Path | str) -> list[Path]:
+    """Draw all figures of a run into its folder; return their paths.
+
+    Raises
+    ------
+    ResultError
+        If the result cannot be read or the pictures cannot be written.
+    """
+    import matplotlib
+
+    result = read_result(folder)
+    if not result.snapshots:
+        return []
+    figures = {"mesh": mesh_figure, "profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
+    written = []
+    with matplotlib.rc_context(
+        {"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "figure.constrained_layout.use": True}
+    ):
+        for name, draw in figures.items():
+            figure = draw(result)
+            path = Path(folder) / f"{name}.png"
+            try:
+                figure.savefig(path, dpi=150)
+            except OSError as error:
+                raise ResultError(f"{path} cannot be written: {error.strerror}") from error
+            written.append(path)
+    return written
+
+
+def _new(
+    rows: int, heights: tuple[float, ...], *, size: tuple[float, float], share: bool = True
+) -> tuple[Figure, list[Axes]]:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size)
+    FigureCanvasAgg(figure)
+    axes = figure.subplots(rows, 1, sharex=share, height_ratios=heights, squeeze=False)[:, 0]
+    return figure, list(axes)
+
+
+def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
+    label = style.pop("label", None)
+    for profile in snapshot.profiles.values():
+        place, p = profile["place [mm]"], profile["pressure [MPa]"]
+        order = np.argsort(place[:, 0])
+        axes.plot(place[order, 0], p[order], label=label, **style)
+        label = None
+
+
+def mesh_figure(result: ResultFile) -> Figure:
+    """Deformed mesh at the first stroke of the cycle, over its contact pressure."""
+    first = result.snapshots[0]
+    figure, (upper, lower) = _new(2, (3.2, 1), size=(8, 9))
+    if first.mesh:
+        points = first.mesh["points [mm]"]
+        upper.triplot(points[:, 0], points[:, 1], first.mesh["triangles"], lw=0.3, color=COLOURS[0])
+        low = points.min(axis=0)
+        upper.set_xlim(low[0] - 0.1, points[:, 0].max() + 0.1)
+    for profile in first.profiles.values():
+        place, gap = profile["place [mm]"], profile["gap [mm]"]
+        level = (place[:, 1] - gap)[np.argmin(gap)]
+        if np.ptp(place[:, 1] - gap) < 1e-9 * max(abs(level), 1.0):
+            upper.axhspan(level - 0.12, level, color="0.75")
+    upper.set_aspect("equal", adjustable="box")
+    upper.grid(visible=False)
+    upper.set_ylabel("y [mm]")
+    upper.set_title(f"{result.scene}: first {first.kind} stroke")
+    _pressure(lower, first, color=COLOURS[1], lw=1.2)
+    lower.set_ylabel("contact pressure [MPa]")
+    lower.set_xlabel("x [mm]")
+    return figure
+
+
+def _window(result: ResultFile, margin: float = 0.15) -> tuple[float, float]:
+    """Range of x, deformed, in which any kept state is in contact."""
+    low, high = [], []
+    for snapshot in result.snapshots:
+        for profile in snapshot.profiles.values():
+            on = profile["pressure [MPa]"] > 0
+            if on.any():
+                low.append(profile["place [mm]"][on, 0].min())
+                high.append(profile["place [mm]"][on, 0].max())
+    if not low:
+        return float(result.outline[:, 0].min()), float(result.outline[:, 0].max())
+    return min(low) - margin * (max(high) - min(low)), max(high) + margin * (max(high) - min(low))
+
+
+def profile_figure(result: ResultFile) -> Figure:
+    """Worn outlines at the start, middle and end, over the pressure of each stroke of the cycle."""
+    last = result.snapshots[-1].stroke
+    strokes = sorted({0, last // 2, last})
+    kinds = result.kinds
+    figure, axes = _new(1 + len(kinds), (1.2, *[1.0] * len(kinds)), size=(10, 3.2 * (1 + len(kinds))))
+    window = _window(result)
+    heights = []
+    for colour, stroke in zip(COLOURS, strokes, strict=False):
+        shown = result.at(stroke, kinds[-1])
+        closed = np.vstack([shown.outline, shown.outline[:1]])
+        axes[0].plot(closed[:, 0], closed[:, 1], color=colour, lw=1.0, label=f"after {shown.stroke} strokes")
+        for profile in shown.profiles.values():
+            heights.append(profile["reference [mm]"][profile["pressure [MPa]"] > 0, 1])
+        for panel, kind in zip(axes[1:], kinds, strict=True):
+            snapshot = result.at(stroke, kind)
+            _pressure(panel, snapshot, color=colour, lw=1.0, label=f"after {snapshot.stroke} strokes")
+    touched = np.concatenate(heights) if heights else np.zeros(0)
+    if len(touched):
+        room = max(np.ptp(touched), 1e-3)
+        axes[0].set_ylim(touched.min() - 0.3 * room, touched.max() + 0.3 * room)
+    axes[0].set_xlim(*window)
+    axes[0].set_ylabel("outline, unloaded: y [mm]")
+    axes[0].set_title(f"{result.scene}: worn outline and contact pressure")
+    for panel, kind in zip(axes[1:], kinds, strict=True):
+        panel.set_ylabel(f"{kind}: pressure [MPa]")
+        panel.set_ylim(bottom=0)
+    axes[-1].set_xlabel("x [mm]")
+    axes[0].legend(loc="upper right")
+    return figure
+
+
+def peak_figure(result: ResultFile) -> Figure:
+    """Pressure around the highest peak after 0, a quarter and a half of the strokes, for the first stroke kind."""
+    kind = result.kinds[0]
+    last = result.snapshots[-1].stroke
+    figure, (axes,) = _new(1, (1,), size=(7, 4.5))
+    centre, width = _highest(result.at(0, kind))
+    for colour, stroke in zip(COLOURS, sorted({0, last // 4, last // 2, last}), strict=False):
+        snapshot = result.at(stroke, kind)
+        _pressure(axes, snapshot, color=colour, lw=1.0, marker=".", ms=4, label=f"after {snapshot.stroke} strokes")
+        width = max(width, _highest(snapshot)[1])
+    axes.set_xlim(centre - 1.5 * width, centre + 1.5 * width)
+    axes.set_ylim(bottom=0)
+    axes.set_xlabel("x [mm]")
+    axes.set_ylabel("contact pressure [MPa]")
+    axes.set_title(f"{result.scene}: {kind} stroke, where the pressure is highest")
+    axes.legend()
+    return figure
+
+
+def _highest(snapshot: Snapshot) -> tuple[float, float]:
+    """Place of the highest pressure and the width of the contact around it [mm]."""
+    centre, width, best = 0.0, 0.1, -1.0
+    for profile in snapshot.profiles.values():
+        place, p = profile["place [mm]"], profile["pressure [MPa]"]
+        i = int(np.argmax(p))
+        if p[i] <= best:
+            continue
+        a = b = i
+        while a > 0 and p[a - 1] > 0:
+            a -= 1
+        while b < len(p) - 1 and p[b + 1] > 0:
+            b += 1
+        centre, width, best = float(place[i, 0]), float(abs(place[b, 0] - place[a, 0])), float(p[i])
+    return centre, max(width, 1e-6)
+
+
+def history_figure(result: ResultFile) -> Figure:
+    """Depth with its error band, peak pressure and contact width over strokes."""
+    series, kinds = result.series, result.kinds
+    stroke = series["stroke [-]"]
+    figure, axes = _new(3, (1.3, 1, 1), size=(8, 9))
+    depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
+    axes[0].plot(stroke, depth, color="k", lw=1.2, label="maximum")
+    axes[0].fill_between(stroke, depth - error, depth + error, color="0.8", label="error estimate")
+    for colour, name in zip(COLOURS, [c for c in series if c.startswith("depth at ")], strict=False):
+        if series[name].max() > 0.02 * max(depth.max() / 1e3, 1e-12):
+            axes[0].plot(stroke, series[name] * 1e3, color=colour, lw=1.0, label=name[9:-5])
+    axes[0].set_ylabel("worn depth [µm]")
+    axes[0].legend()
+    for panel, ending in ((axes[1], "peak pressure [MPa]"), (axes[2], "contact width [mm]")):
+        for column in [c for c in series if c.endswith(ending)]:
+            for colour, kind in zip(COLOURS, kinds, strict=False):
+                mine = series["kind [-]"] == kind
+                panel.plot(
+                    stroke[mine],
+                    series[column][mine],
+                    ".-",
+                    color=colour,
+                    lw=1.0,
+                    ms=4,
+                    label=f"{column[: -len(ending) - 1]}, {kind}",
+                )
+        panel.set_ylabel(ending)
+        panel.set_ylim(bottom=0)
+        panel.legend()
+    axes[0].set_title(result.scene)
+    axes[2].set_xlabel("strokes")
+    return figure

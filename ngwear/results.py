@@ -1,0 +1,307 @@
+"""What a run leaves on disk: series.csv, result.h5, summary.json and a checkpoint to go on from."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+import os
+import pickle
+import resource
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear import __version__
+from ngwear.errors import ResultError
+from ngwear.geometry.contour import Contour
+from ngwear.scene import Scene
+from ngwear.units import UNITS, force_unit
+
+Array = NDArray[np.float64]
+
+SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.pkl"
+
+
+def fingerprint(scene: Scene) -> str:
+    """Hash of a scene, to tell whether a folder belongs to it."""
+    contour = scene.contour
+    rest = [repr(getattr(scene, f.name)) for f in fields(scene) if f.name != "contour"]
+    content = [contour.points.tobytes(), contour.corners.tobytes(), repr((contour.names, rest)).encode()]
+    return hashlib.sha256(b"".join(content)).hexdigest()
+
+
+def depths(before: Contour, after: Contour) -> Array:
+    """Distance of each point of the unworn outline from the worn one [mm], shape (n,)."""
+    from shapely import LinearRing, distance, points
+
+    return np.asarray(distance(points(before.points), LinearRing(after.points)))
+
+
+@dataclass
+class Snapshot:
+    """Outline and pressures kept at one solved stroke."""
+
+    stroke: int
+    kind: str
+    outline: Array
+    profiles: dict[str, dict[str, Array]]
+    mesh: dict[str, Array] | None = None
+
+
+@dataclass
+class Recorder:
+    """Rows and snapshots of a run so far; plain data that a checkpoint carries along."""
+
+    scene: Scene
+    rows: list[dict[str, Any]] = field(default_factory=list)
+    snapshots: list[Snapshot] = field(default_factory=list)
+    wall: float = 0.0
+    cpu: float = 0.0
+
+    def add(self, state: Any, *, wall: float) -> None:
+        """Add the strokes of the state's last step."""
+        for number, report in enumerate(state.reports):
+            self.rows.append(self._row(state, report, wall))
+            mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else None
+            self.snapshots.append(self._snapshot(report, mesh))
+
+    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+        scene = self.scene
+        cycle = scene.program.cycle
+        unit = force_unit(scene.axisymmetric)
+        full, part = divmod(report.last_stroke, len(cycle))
+        sliding = full * sum(s.travel for s in cycle) + sum(s.travel for s in cycle[:part])
+        depth = depths(scene.contour, report.contour)
+        ledger = report.ledger
+        row: dict[str, Any] = {
+            "stroke [-]": report.last_stroke,
+            "kind [-]": cycle[report.phase].name,
+            "strokes in one solve [-]": report.repeats,
+            "sliding distance [mm]": sliding,
+            "worn area by the law [mm^2]": ledger.worn,
+            "area removed from the outline [mm^2]": ledger.removed,
+            "error estimate of worn area [mm^2]": ledger.area_error,
+            "maximum depth [mm]": float(depth.max()),
+            "error estimate of maximum depth [mm]": ledger.depth_error,
+        }
+        for name in dict.fromkeys(e for c in scene.contacts if c.specific_wear_rate > 0 for e in c.edges):
+            on = scene.contour.on((name,))
+            row[f"depth at {name} [mm]"] = float(depth[on].max())
+        for contact, profile in report.contacts.items():
+            zones = profile.zones()
+            highest = max(zones, key=lambda z: z.peak, default=None)
+            row[f"{contact} peak pressure [MPa]"] = 0.0 if highest is None else highest.peak
+            row[f"{contact} width at the peak [mm]"] = 0.0 if highest is None else highest.width
+            row[f"{contact} contact width [mm]"] = sum(z.width for z in zones)
+            row[f"{contact} contact zones [-]"] = len(zones)
+        for name, force in report.forces.items():
+            row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
+        row |= {
+            "leaks [-]": int(report.leaks),
+            "Newton iterations [-]": report.iterations,
+            "solves [-]": state.work.solves,
+            "retries [-]": state.work.retries,
+            "remeshes [-]": ledger.remeshes,
+            "elements [-]": state.stage.body.mesh.ne,
+            "wall time [s]": round(wall, 3),
+        }
+        return row
+
+    def _snapshot(self, report: Any, mesh: dict[str, Array] | None) -> Snapshot:
+        profiles = {
+            name: {
+                "reference [mm]": p.reference,
+                "place [mm]": p.place,
+                "pressure [MPa]": p.pressure,
+                "nominal pressure [MPa]": p.nominal_pressure,
+                "gap [mm]": p.gap,
+            }
+            for name, p in report.contacts.items()
+        }
+        kind = self.scene.program.cycle[report.phase].name
+        return Snapshot(report.last_stroke, kind, report.contour.points, profiles, mesh)
+
+    def summary(self, state: Any, status: str, message: str) -> dict[str, Any]:
+        """The run in a few numbers."""
+        scene = self.scene
+        cycle = [s.name for s in scene.program.cycle]
+        depth = depths(scene.contour, state.contour)
+        radius = _mean_radius(scene.contour, state.contour) if scene.axisymmetric else None
+        ledger = state.ledger
+        out: dict[str, Any] = {
+            "status": status,
+            "message": message,
+            "scene": scene.name,
+            "strokes": state.strokes,
+            "worn area [mm^2]": ledger.removed,
+            "worn area by the law [mm^2]": ledger.worn,
+            "maximum depth [mm]": float(depth.max()),
+        }
+        if radius is not None:
+            out["worn volume [mm^3]"] = 2 * np.pi * radius
+        for name in dict.fromkeys(e for c in scene.contacts if c.specific_wear_rate > 0 for e in c.edges):
+            out[f"{name} depth [mm]"] = float(depth[scene.contour.on((name,))].max())
+        peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
+        for kind in cycle:
+            rows = [r for r in self.rows if r["kind [-]"] == kind]
+            for column in peaks:
+                out[f"first {kind} {column}"] = rows[0][column]
+                out[f"last {kind} {column}"] = rows[-1][column]
+        if peaks:
+            out["peak pressure [MPa]"] = max(r[c] for r in self.rows[-len(cycle) :] for c in peaks)
+        worst = max(ledger.worn, 1e-300)
+        out |= {
+            "solves": state.work.solves,
+            "Newton iterations": state.work.iterations,
+            "retries": state.work.retries,
+            "remeshes": ledger.remeshes,
+            "error estimates": {
+                "worn area [-]": ledger.area_error / worst,
+                "maximum depth [-]": ledger.depth_error / max(float(depth.max()), 1e-300),
+                "area against the law [-]": abs(ledger.removed - ledger.worn) / worst,
+                "area in a remesh [-]": ledger.remesh_jump,
+            },
+            "elements": state.stage.body.mesh.ne,
+            "unknowns": state.stage.problem.space.ndof,
+            "wall time [s]": round(self.wall, 3),
+            "CPU time [s]": round(self.cpu, 3),
+            "peak memory [MB]": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+            "units": UNITS,
+            "ngwear": __version__,
+        }
+        return out
+
+
+def _mean_radius(before: Contour, after: Contour) -> float:
+    """First moment about the axis of the removed area [mm³]: times 2 pi it is the worn volume."""
+
+    def moment(points: Array) -> float:
+        x, y = points.T
+        x2, y2 = np.roll(x, -1), np.roll(y, -1)
+        return float(((x * y2 - x2 * y) * (y + y2)).sum() / 6)
+
+    return moment(before.points) - moment(after.points)
+
+
+def _deformed_mesh(state: Any, phase: int) -> dict[str, Array]:
+    """Deformed vertices and triangles of one stroke of the cycle."""
+    from ngwear.effects.base import DISPLACEMENT
+    from ngwear.geometry.section import mesh_arrays
+
+    stage = state.stage
+    points, triangles = mesh_arrays(stage.body.mesh)
+    u = state.phases[phase].vector[stage.problem.part(DISPLACEMENT)].reshape(2, -1)[:, : len(points)].T
+    return {"points [mm]": points + u, "triangles": triangles}
+
+
+class Folder:
+    """A run's folder; every file in it is replaced as a whole, so that a kill leaves the last good one.
+
+    Raises
+    ------
+    ResultError
+        If the folder belongs to another run, cannot be written, or the disk is full.
+    """
+
+    def __init__(self, path: Path, scene: Scene, *, resume: bool) -> None:
+        self.path = Path(path)
+        self.scene_hash = fingerprint(scene)
+        if self.path.exists() and not self.path.is_dir():
+            raise ResultError(f"{self.path} is a file; give a folder for the results")
+        if not resume and (self.path / CHECKPOINT).exists():
+            raise ResultError(f"{self.path} already holds a run: go on with --resume, or give another folder")
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ResultError(f"{self.path} cannot be made: {error.strerror}") from error
+        if not os.access(self.path, os.W_OK):
+            raise ResultError(f"{self.path} cannot be written to: no permission")
+
+    def load(self) -> tuple[Any, Recorder] | None:
+        """Return the state and the records of the run to go on with, or None if it has not begun."""
+        file = self.path / CHECKPOINT
+        if not file.exists():
+            return None
+        try:
+            saved = pickle.loads(file.read_bytes())
+            scene_hash, state, recorder = saved["scene"], saved["state"], saved["recorder"]
+        except Exception as error:
+            raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
+        if scene_hash != self.scene_hash:
+            raise ResultError(f"{self.path} holds a run of another scene (or of a changed one): give another folder")
+        return state, recorder
+
+    def save(self, state: Any, recorder: Recorder) -> None:
+        """Write checkpoint and series."""
+        content = pickle.dumps({"scene": self.scene_hash, "state": state, "recorder": recorder})
+        self._replace(CHECKPOINT, lambda file: file.write(content))
+        self._replace(SERIES, lambda file: file.write(_csv(recorder.rows)))
+
+    def finish(self, recorder: Recorder, summary: dict[str, Any]) -> None:
+        """Write the summary and the fields."""
+        self._replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
+        self._replace(FIELDS, lambda file: _hdf5(file, recorder, summary))
+
+    def _replace(self, name: str, write: Callable[[IO[bytes]], Any]) -> None:
+        try:
+            with tempfile.NamedTemporaryFile(dir=self.path, prefix=f".{name}.", delete=False) as file:
+                temporary = Path(file.name)
+                try:
+                    write(file)
+                    file.flush()
+                    os.fsync(file.fileno())
+                except BaseException:
+                    temporary.unlink(missing_ok=True)
+                    raise
+            temporary.replace(self.path / name)
+        except OSError as error:
+            raise ResultError(
+                f"{self.path / name} cannot be written: {error.strerror or error}; the last saved state is kept: "
+                "free some space or permission and go on with --resume"
+            ) from error
+
+
+def _csv(rows: list[dict[str, Any]]) -> bytes:
+    import io
+
+    text = io.StringIO()
+    if rows:
+        writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    return text.getvalue().encode()
+
+
+def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
+    import h5py
+
+    scene = recorder.scene
+    with h5py.File(file, "w") as h5:
+        h5.attrs["ngwear"] = __version__
+        h5.attrs["scene"] = scene.name
+        h5.attrs["units"] = json.dumps(UNITS)
+        h5.attrs["summary"] = json.dumps(summary)
+        outline = h5.create_group("outline")
+        outline["points [mm]"] = scene.contour.points
+        outline["edges"] = np.array(scene.contour.names, dtype=h5py.string_dtype())
+        outline.attrs["provenance"] = scene.contour.provenance
+        series = h5.create_group("series")
+        for column in recorder.rows[0] if recorder.rows else ():
+            values = [row[column] for row in recorder.rows]
+            series[column] = np.array(values, dtype=h5py.string_dtype()) if isinstance(values[0], str) else values
+        strokes = h5.create_group("strokes")
+        for number, snapshot in enumerate(recorder.snapshots):
+            group = strokes.create_group(f"{number:05d}")
+            group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
+            group["outline [mm]"] = snapshot.outline
+            for contact, profile in snapshot.profiles.items():
+                for name, values in profile.items():
+                    group[f"{contact}/{name}"] = values
+            for name, values in (snapshot.mesh or {}).items():
+                group[f"mesh/{name}"] = values

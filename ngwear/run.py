@@ -1,0 +1,178 @@
+"""One verb: run a scene to its end, with files, pictures, progress and resumption."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
+from ngwear.results import Folder, Recorder
+from ngwear.scene import Scene
+from ngwear.stepper import State, Stepper
+
+COMPLETED, GAVE_UP = "completed", "gave up"
+
+
+@dataclass(frozen=True)
+class Result:
+    """How a run ended, and what it found.
+
+    Attributes
+    ----------
+    status : str
+        ``"completed"`` or ``"gave up"``.
+    message : str
+        Why it stopped.
+    summary : dict
+        As in ``summary.json``.
+    recorder : Recorder
+        Rows (as in ``series.csv``) and snapshots.
+    state : State or None
+        The last accepted state; None if the part could not be mounted.
+    error : Exception or None
+        What made it give up.
+    """
+
+    status: str
+    message: str
+    summary: dict[str, Any]
+    recorder: Recorder
+    state: State | None
+    error: Exception | None = None
+
+
+def run(
+    scene: Scene,
+    *,
+    out: Path | str | None = None,
+    resume: bool = False,
+    progress: bool = False,
+    throw: bool = True,
+    figures: bool = True,
+) -> Result:
+    """Run a scene to its end.
+
+    Parameters
+    ----------
+    scene : Scene
+    out : path or None
+        Folder for ``series.csv``, ``result.h5``, ``summary.json``, the checkpoint and the figures.
+    resume : bool
+        Go on from the folder's checkpoint.
+    progress : bool
+        Show a progress bar with depth, jump and the time left.
+    throw : bool
+        Raise when the run gives up; else return a result that says why. What it had is saved either way.
+    figures : bool
+        Draw the figures into the folder at the end.
+
+    Raises
+    ------
+    ResultError
+        If the folder cannot be used.
+    ConvergenceError, GeometryError, MeshError
+        When the run gives up and ``throw`` is True.
+    """
+    folder = None if out is None else Folder(Path(out), scene, resume=resume)
+    saved = folder.load() if folder is not None and resume else None
+    wall, cpu = time.perf_counter(), time.process_time()
+    state, recorder = saved if saved is not None else (None, Recorder(scene))
+    wall, cpu = wall - recorder.wall, cpu - recorder.cpu
+    error: Exception | None = None
+    with _Bar(scene, shown=progress) as bar:
+        stepper = Stepper(scene, on_mount=bar.mounting)
+        try:
+            if state is None:
+                state = stepper.start()
+                _keep(folder, state, recorder, wall, cpu)
+            bar.begin(state)
+            while not stepper.finished(state):
+                state = stepper.advance(state)
+                _keep(folder, state, recorder, wall, cpu)
+                bar.update(state, recorder)
+        except (ConvergenceError, GeometryError, MeshError) as failure:
+            error = failure
+    recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
+    status = COMPLETED if error is None else GAVE_UP
+    message = "all strokes done" if error is None else str(error)
+    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0}
+    if state is not None:
+        summary = recorder.summary(state, status, message)
+    if folder is not None:
+        folder.finish(recorder, summary)
+        if scene.save.vtk and state is not None:
+            _write_vtk(folder.path, state)
+        if figures and recorder.rows:
+            from ngwear.plot import plot
+
+            plot(folder.path)
+    if error is not None and throw:
+        raise error
+    return Result(status, message, summary, recorder, state, error)
+
+
+def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, cpu: float) -> None:
+    recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
+    recorder.add(state, wall=recorder.wall)
+    if folder is not None:
+        folder.save(state, recorder)
+
+
+def _write_vtk(path: Path, state: State) -> None:
+    """Write the last state of each stroke of the cycle for ParaView."""
+    import ngsolve as ng
+
+    from ngwear.effects.base import DISPLACEMENT
+    from ngwear.effects.elasticity import PRESSURE
+
+    stage = state.stage
+    for stroke, phase in zip(stage.scene.program.cycle, state.phases, strict=True):
+        stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+        fields = stage.problem.fields
+        writer = ng.VTKOutput(
+            stage.body.mesh,
+            coefs=[fields[DISPLACEMENT], fields[PRESSURE]],
+            names=[DISPLACEMENT, PRESSURE.replace(" ", "_")],
+            filename=str(path / f"stroke_{state.strokes}_{stroke.name}"),
+            subdivision=1,
+        )
+        try:
+            writer.Do()
+        except Exception as error:
+            raise ResultError(f"{path}: the VTK file cannot be written: {error}") from error
+
+
+class _Bar:
+    """Progress on the terminal: mounting in per cent, then strokes with depth and jump."""
+
+    def __init__(self, scene: Scene, *, shown: bool) -> None:
+        from tqdm import tqdm
+
+        self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
+        self._scene, self._bar = scene, None
+
+    def __enter__(self) -> _Bar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def mounting(self, fraction: float) -> None:
+        if self._bar is None:
+            self._bar = self._make(total=100, desc="mounting", unit="%")
+        self._bar.update(round(100 * fraction) - self._bar.n)
+
+    def begin(self, state: State) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        self._bar = self._make(total=self._scene.program.strokes, initial=state.strokes, desc="wear", unit="stroke")
+
+    def update(self, state: State, recorder: Recorder) -> None:
+        row = recorder.rows[-1]
+        self._bar.update(state.strokes - self._bar.n)
+        self._bar.set_postfix_str(
+            f"depth {1e3 * row['maximum depth [mm]']:.1f} µm, {row['strokes in one solve [-]']} a solve"
+        )
