@@ -14,13 +14,13 @@ import numpy as np
 
 TIP = (3.15, 10.2)  # lip tip: axial position and radius [mm]
 TIP_RADIUS = 0.02
-FLANKS = (24.0, 22.0)  # degrees from the rod axis, air side and sealed side
+FLANKS = (25.0, 22.0)  # degrees from the rod axis, air side and sealed side
 PITCH = 0.33
 LEFT = 0.25  # where the first left ridge begins
-LEFT_BASE = (10.51, 10.315)  # radius of the ridge roots at the first and after the last left ridge
+LEFT_BASE = (10.545, 10.31)  # radius of the ridge roots at the first and after the last left ridge
 LEFT_HEIGHT = 0.10
 RIGHT = 3.66
-RIGHT_BASE = (10.33, 10.60)
+RIGHT_BASE = (10.335, 10.58)
 RIGHT_HEIGHT = 0.10
 SPACING = 0.0095  # ridges
 
@@ -28,7 +28,9 @@ SPACING = 0.0095  # ridges
 def ridges(start: float, count: int, base: tuple[float, float], height: float) -> np.ndarray:
     """Sinusoidal ridges: tip and root radius pitch^2 / (2 pi^2 height) = 0.046 mm."""
     z = np.linspace(start, start + count * PITCH, 4000)
-    r = np.interp(z, [z[0], z[-1]], base) - height / 2 * (1 - np.cos(2 * np.pi * (z - start) / PITCH))
+    share = (z - z[0]) / (z[-1] - z[0])
+    rise = share**2 if base[1] > base[0] else 1 - (1 - share) ** 2  # flat beside the lip
+    r = base[0] + (base[1] - base[0]) * rise - height / 2 * (1 - np.cos(2 * np.pi * (z - start) / PITCH))
     return resample(np.column_stack([z, r]), SPACING)
 
 

@@ -61,16 +61,18 @@ def fitted(contour: Contour, field: SizeField) -> Contour:
         contour = contour.inserted(middle[long])
 
 
-def mesh_nodes(contour: Contour, field: SizeField, *, max_turn: float = 0.5) -> NDArray[np.intp]:
-    """Choose the contour points that become mesh nodes: about h apart, turning at most ``max_turn`` rad between two.
+def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
+    """Choose the contour points that become mesh nodes, about h apart.
 
-    Corners and changes of name are always nodes.
+    Between two nodes the outline turns by at most 0.5 rad, in the patch by a quarter of its radius. Corners
+    and changes of name are always nodes.
     """
     n = len(contour)
     h = field(contour.points)
     turn, length = np.abs(contour.turning), contour.lengths
     fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(n)])
     start = int(np.argmax(fixed))
+    max_turn = np.where(h <= 1.01 * np.min(field.sizes, initial=field.coarse), 0.26, 0.5)
     chosen = [start]
     run_length = run_turn = 0.0
     for step in range(1, n):
@@ -78,7 +80,7 @@ def mesh_nodes(contour: Contour, field: SizeField, *, max_turn: float = 0.5) -> 
         run_length += length[i - 1]
         ahead = run_length + length[i]
         size = min(h[i], h[chosen[-1]])
-        if fixed[i] or ahead > 1.3 * size or run_turn + turn[i] > max_turn:
+        if fixed[i] or ahead > 1.3 * size or run_turn + turn[i] > max_turn[i]:
             chosen.append(i)
             run_length = run_turn = 0.0
         else:

@@ -1,0 +1,167 @@
+"""Options, markers by folder, and a small scene that mounts and wears in a third of a second."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ngwear.geometry.contour import Contour
+from ngwear.scenefile import read_scene
+
+TESTS = Path(__file__).parent
+FOLDERS = ("unit", "verification", "stability", "regression", "benchmarks")
+SEAL = TESTS.parent / "geometries" / "rod_seal" / "scene.toml"
+
+SHEET_OUTLINE = """
+title = "sheet, 4 x 2 mm"
+[[edge]]
+name = "bottom"
+points = [[0, 0], [0.5, 0], [1, 0], [1.5, 0], [2, 0], [2.5, 0], [3, 0], [3.5, 0]]
+[[edge]]
+name = "right"
+points = [[4, 0], [4, 0.5], [4, 1], [4, 1.5]]
+[[edge]]
+name = "top"
+points = [[4, 2], [3.5, 2], [3, 2], [2.5, 2], [2, 2], [1.5, 2], [1, 2], [0.5, 2]]
+[[edge]]
+name = "left"
+points = [[0, 2], [0, 1.5], [0, 1], [0, 0.5]]
+"""
+
+SHEET_SCENE = """
+[scene]
+name = "sheet"
+kind = "plane strain"
+
+[contour]
+file = "sheet.toml"
+
+[material]
+model = "neo-hooke"
+shear = 1.0
+bulk_modulus = 100.0
+
+[[contact]]
+name = "roller"
+edges = ["top"]
+surface = { type = "cylinder", centre = [2.0, 3.99], radius = 2.0, push = [0.0, -1.0] }
+force = 0.5
+specific_wear_rate = 1.0e-3
+friction = 0.1
+
+[[support]]
+edges = ["bottom"]
+
+[program]
+strokes = 4
+
+[[program.stroke]]
+name = "stroke"
+travel = 10.0
+
+[accuracy]
+patch = 0.1
+coarse = 0.5
+mounting = 0.15
+
+[wear]
+step = "each"
+"""
+
+
+def pytest_addoption(parser):
+    parser.addoption("--slow", action="store_true", help="also run tests/stability and tests marked slow")
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "slow: takes more than a few seconds; needs --slow")
+    for folder in FOLDERS:
+        config.addinivalue_line("markers", f"{folder}: everything under tests/{folder}")
+
+
+def pytest_collection_modifyitems(config, items):
+    for item in items:
+        try:
+            folder = item.path.relative_to(TESTS).parts[0]
+        except ValueError:
+            continue
+        if folder in FOLDERS:
+            item.add_marker(folder)
+        slow = folder == "stability" or item.get_closest_marker("slow") is not None
+        if slow and not config.getoption("--slow"):
+            item.add_marker(pytest.mark.skip(reason="slow: give --slow"))
+
+
+def edited(text: str, changes) -> str:
+    """Replace pieces of a text that must be there."""
+    for old, new in changes:
+        assert text.count(old) >= 1, f"{old!r} is not in the text"
+        text = text.replace(old, new, 1)
+    return text
+
+
+def _write_sheet(folder: Path, *changes: tuple[str, str], outline: str = SHEET_OUTLINE) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "sheet.toml").write_text(outline, encoding="utf-8")
+    file = folder / "scene.toml"
+    file.write_text(edited(SHEET_SCENE, changes), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(scope="session")
+def write_sheet():
+    """``write_sheet(folder, (old, new), ...)`` writes the small scene with pieces of its text replaced."""
+    return _write_sheet
+
+
+@pytest.fixture
+def sheet_file(tmp_path):
+    """The small scene as a file."""
+    return _write_sheet(tmp_path)
+
+
+@pytest.fixture
+def sheet(sheet_file):
+    """The small scene."""
+    return read_scene(sheet_file)
+
+
+@pytest.fixture(scope="session")
+def seal_text():
+    """The shipped seal's scene file, its outline given by an absolute path."""
+    return SEAL.read_text(encoding="utf-8").replace('"contour.toml"', f"'{SEAL.with_name('contour.toml')}'")
+
+
+@pytest.fixture(scope="session")
+def seal():
+    """The shipped seal's scene."""
+    return read_scene(SEAL)
+
+
+def _circle(n: int, radius: float = 1.0, centre=(0.0, 0.0)) -> Contour:
+    angle = 2 * np.pi * np.arange(n) / n
+    points = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1) + centre
+    return Contour(points, ("rim",) * n, np.zeros(n, dtype=bool))
+
+
+@pytest.fixture(scope="session")
+def circle():
+    """``circle(n, radius)``: an outline without corners."""
+    return _circle
+
+
+def _rectangle(width: float, height: float, nx: int = 1, ny: int = 1) -> Contour:
+    ends = [(0, 0, "bottom", nx), (width, 0, "right", ny), (width, height, "top", nx), (0, height, "left", ny)]
+    points, names, corners = [], [], []
+    for k, (x, y, name, n) in enumerate(ends):
+        x2, y2 = ends[(k + 1) % 4][:2]
+        points += [(x + (x2 - x) * i / n, y + (y2 - y) * i / n) for i in range(n)]
+        names += [name] * n
+        corners += [True] + [False] * (n - 1)
+    return Contour(np.array(points), tuple(names), np.array(corners))
+
+
+@pytest.fixture(scope="session")
+def rectangle():
+    """``rectangle(width, height, nx, ny)`` with the edges bottom, right, top, left from the origin."""
+    return _rectangle

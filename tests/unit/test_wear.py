@@ -1,0 +1,125 @@
+import math
+
+import numpy as np
+import pytest
+
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.wear.archard import critical_distance, worn_share
+from ngwear.wear.control import GROWTH, SAFETY, JumpControl
+
+
+def profile(t, depth, lengths):
+    """A contact with nodes at contour parameters t of an outline of given segment lengths, and W phi_i ds for W."""
+    arc = np.interp(t, np.arange(len(lengths) + 1), np.concatenate([[0], np.cumsum(lengths)]))
+    h = np.diff(arc)
+    edges = np.stack([np.arange(len(t) - 1), np.arange(1, len(t))], axis=1)
+    weight = np.bincount(edges.ravel(), np.repeat(h / 2, 2))
+    empty = np.zeros((len(t), 2))
+    made = ContactProfile(
+        t=np.asarray(t, dtype=float),
+        reference=empty,
+        place=empty,
+        nominal_pressure=depth,
+        pressure=depth,
+        gap=np.zeros(len(t)),
+        weight=weight,
+        load=depth * weight,
+        edges=edges,
+    )
+    return made, depth * weight
+
+
+def test_uniform_wear_of_nodes_between_points_is_shared_exactly(rectangle):
+    box = rectangle(4.0, 2.0, 8, 4)
+    t = np.array([0.3, 1.6, 3.2])
+    made, amount = profile(t, np.full(3, 2e-3), box.lengths)
+    share = worn_share(box, made, amount)
+    assert share.sum() == pytest.approx(amount.sum(), rel=1e-14)
+    assert share.sum() == pytest.approx(2e-3 * 2.9 * 0.5, rel=1e-14)
+    hats = [0.5 * 0.7**2, 1 - 0.5 * 0.3**2, 1.0, 0.5 + 0.2 - 0.5 * 0.2**2, 0.5 * 0.2**2]
+    assert share[:5] == pytest.approx(2e-3 * 0.5 * np.array(hats), rel=1e-12)
+    assert (share[5:] == 0).all()
+
+
+def test_share_keeps_sum_and_first_moment_for_linear_wear(rectangle):
+    box = rectangle(4.0, 2.0, 8, 4)
+    t = np.array([1.0, 2.5, 4.5, 6.0])
+    made, _ = profile(t, 1e-3 * t, box.lengths)
+    # W linear: int W phi ds by Simpson's rule on each edge
+    amount = np.zeros(4)
+    for i in range(3):
+        h, a, b = 0.5 * (t[i + 1] - t[i]), 1e-3 * t[i], 1e-3 * t[i + 1]
+        amount[i] += h * (2 * a + b) / 6
+        amount[i + 1] += h * (a + 2 * b) / 6
+    share = worn_share(box, made, amount)
+    assert share.sum() == pytest.approx(0.5 * 1e-3 * (36 - 1) / 2, rel=1e-13)
+    assert (share >= 0).all()
+
+
+def test_share_across_the_outlines_end(circle):
+    ring = circle(10)
+    made, amount = profile(np.array([8.5, 9.5]), np.full(2, 1e-3), ring.lengths)
+    wrapped = ContactProfile(**{**made.__dict__, "t": np.array([9.5, 0.5])})
+    share = worn_share(ring, wrapped, amount)
+    assert share.sum() == pytest.approx(amount.sum(), rel=1e-14)
+    assert share[0] == pytest.approx(0.75 * amount.sum())
+    assert share[[9, 1]] == pytest.approx(0.125 * amount.sum())
+
+
+def test_no_load_no_share(rectangle):
+    made, amount = profile(np.array([0.0, 1.0]), np.zeros(2), rectangle(4.0, 2.0).lengths)
+    assert (worn_share(rectangle(4.0, 2.0), made, amount) == 0).all()
+
+
+def test_critical_distance():
+    assert critical_distance(0.01, 0.0, 5.0) == math.inf
+    assert critical_distance(0.01, 1e-6, 5.0) == pytest.approx(0.04 / (math.pi * 5e-6))
+
+
+def test_unknown_error_keeps_the_jump():
+    control = JumpControl(0.01, cycles=4)
+    control.update(math.nan, 4)
+    assert control.cycles == 4
+
+
+@pytest.mark.parametrize("ratio", [0.0, 1e-9])
+def test_growth_is_bounded(ratio):
+    control = JumpControl(0.01)
+    control.update(ratio, 5)
+    assert control.cycles == 5 * GROWTH
+
+
+def test_error_at_the_tolerance_shrinks_by_the_safety_factor():
+    control = JumpControl(0.01)
+    control.update(0.01, 100)
+    assert control.cycles == 100 * SAFETY
+
+
+def test_large_error_shrinks_but_not_below_one():
+    control = JumpControl(0.01)
+    control.update(1.0, 100)
+    assert control.cycles == 30
+    control.update(1.0, 1)
+    assert control.cycles == 1
+
+
+def test_longest_caps_the_growth():
+    control = JumpControl(0.01, longest=7)
+    control.update(0.0, 5)
+    assert control.cycles == 7
+
+
+@pytest.mark.parametrize(
+    ("ratio", "cycles", "accepted"),
+    [(0.02, 5, True), (0.0201, 5, False), (9.9, 1, True), (math.nan, 5, True), (math.inf, 5, False)],
+)
+def test_acceptance(ratio, cycles, accepted):
+    assert JumpControl(0.01).accepts(ratio, cycles) is accepted
+
+
+def test_cut_halves_down_to_one():
+    control = JumpControl(0.01)
+    control.cut(9)
+    assert control.cycles == 4
+    control.cut(1)
+    assert control.cycles == 1
