@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -51,6 +52,7 @@ def run(
     progress: bool = False,
     throw: bool = True,
     figures: bool = True,
+    on_step: Callable[[State], None] | None = None,
 ) -> Result:
     """Run a scene to its end.
 
@@ -67,6 +69,8 @@ def run(
         Raise when the run gives up; else return a result that says why. What it had is saved either way.
     figures : bool
         Draw the figures into the folder at the end.
+    on_step : callable or None
+        Called with the state after mounting and after each accepted step.
 
     Raises
     ------
@@ -75,6 +79,7 @@ def run(
     ConvergenceError, GeometryError, MeshError
         When the run gives up and ``throw`` is True.
     """
+    on_step = on_step or (lambda state: None)
     folder = None if out is None else Folder(Path(out), scene, resume=resume)
     saved = folder.load() if folder is not None and resume else None
     wall, cpu = time.perf_counter(), time.process_time()
@@ -87,10 +92,12 @@ def run(
             if state is None:
                 state = stepper.start()
                 _keep(folder, state, recorder, wall, cpu)
+                on_step(state)
             bar.begin(state)
             while not stepper.finished(state):
                 state = stepper.advance(state)
                 _keep(folder, state, recorder, wall, cpu)
+                on_step(state)
                 bar.update(state, recorder)
         except (ConvergenceError, GeometryError, MeshError) as failure:
             error = failure

@@ -8,7 +8,6 @@ from functools import cached_property
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ngwear.errors import MeshError
 from ngwear.geometry import nodal, section
@@ -150,7 +149,6 @@ class Body:
 def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:
     """Order the boundary elements along the outline and find the contour parameters of their ends."""
     points, _ = section.mesh_arrays(mesh)
-    tree = cKDTree(contour.points)
     scale = contour.lengths.sum()
     elements = list(mesh.Elements(ng.BND))
     ends = np.array([[v.nr for v in el.vertices] for el in elements])
@@ -159,7 +157,9 @@ def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:
     edge = np.array([el.edges[0].nr for el in elements])
     used = np.unique(ends)
     parameter = np.full(mesh.nv, np.nan)
-    distance, nearest = tree.query(points[used])
+    apart = np.linalg.norm(points[used][:, None] - contour.points[None], axis=2)
+    nearest = apart.argmin(axis=1)
+    distance = apart[np.arange(len(used)), nearest]
     on_point = distance < 1e-9 * scale
     parameter[used[on_point]] = nearest[on_point]
     for vertex in used[~on_point]:

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from ngwear.errors import GeometryError
 
@@ -139,9 +138,12 @@ class Contour:
             length = self.lengths[run[:-1]]
             knots = np.concatenate([[0.0], np.cumsum(length)])
             data = values[run]
-            if len(run) == 2:
-                slope = np.repeat((data[1:] - data[:1]) / length[:, None], 2, axis=0)
+            share = (knots / knots[-1])[:, None]
+            if np.allclose(data, data[0] + share * (data[-1] - data[0]), rtol=0, atol=1e-12 * knots[-1]):
+                slope = np.repeat((data[-1:] - data[:1]) / knots[-1], len(run), axis=0)  # straight
             else:
+                from scipy.interpolate import CubicSpline
+
                 closed = not self.corners.any()
                 slope = CubicSpline(knots, data, bc_type="periodic" if closed else "not-a-knot")(knots, 1)
             third = length[:, None] / 3

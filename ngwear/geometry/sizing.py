@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ngwear.geometry.contour import Array, Contour
 
@@ -36,11 +35,9 @@ class SizeField:
         """Element edge wanted at points of shape (n, 2); shape (n,)."""
         points = np.atleast_2d(points)
         h = np.full(len(points), self.coarse)
-        for size in np.unique(self.sizes):
-            tree = cKDTree(self.seeds[self.sizes == size])
-            reach = (self.coarse - size) / self.grading
-            distance, _ = tree.query(points, distance_upper_bound=max(reach, 1e-12))
-            h = np.minimum(h, size + self.grading * distance)
+        if len(self.seeds):
+            distance = np.linalg.norm(points[:, None] - self.seeds[None], axis=2)
+            h = np.minimum(h, (self.sizes + self.grading * distance).min(axis=1))
         return h
 
 
@@ -53,9 +50,7 @@ def fitted(contour: Contour, field: SizeField) -> Contour:
         middle = np.arange(len(contour)) + 0.5
         ends = field(contour.points)
         h = np.minimum(np.minimum(ends, np.roll(ends, -1)), field(contour.at(middle)))
-        # A long segment may hide a seed between its end points: bound h from the distance it spans.
-        h_inside = np.minimum(h, field.coarse)
-        long = contour.lengths > 1.3 * h_inside
+        long = contour.lengths > 1.3 * h
         if not long.any():
             return contour
         contour = contour.inserted(middle[long])

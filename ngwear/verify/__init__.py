@@ -19,6 +19,11 @@ CASES: dict[str, str] = {
     "hertz": "ngwear.verify.hertz",
     "p1a": "ngwear.verify.p1a",
     "ring": "ngwear.verify.ring",
+    "block_on_ring": "ngwear.verify.block_on_ring",
+    "worn_cylinder": "ngwear.verify.worn_cylinder",
+    "stability_pair": "ngwear.verify.stability_pair",
+    "rod_seal": "ngwear.verify.rod_seal",
+    "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
 }
 
 __all__ = ["CASES", "Check", "verify"]

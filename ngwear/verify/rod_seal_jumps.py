@@ -1,0 +1,33 @@
+"""The rod seal with cycle jumps against the same with each of its 200 strokes solved.
+
+Both runs share mesh settings and scene, so that only the wear step differs. The error that the jump run
+reports of itself, from the embedded pair of backward Euler and the trapezoidal rule, shall be at least half
+of the true one. Takes a few minutes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ngwear.run import run as run_scene
+from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.rod_seal import shipped_scene
+
+CASE = "rod_seal_jumps"
+
+
+def run() -> list[Check]:
+    """Run the case."""
+    watch = Stopwatch()
+    scene = shipped_scene()
+    jumps = run_scene(scene).summary
+    each = run_scene(replace(scene, wear=replace(scene.wear, step="each"))).summary
+    seconds = watch.seconds
+    checks = []
+    for quantity, estimate in (("lip depth [mm]", "maximum depth [-]"), ("worn area [mm^2]", "worn area [-]")):
+        checks.append(Check(CASE, quantity, jumps[quantity], each[quantity], 0.01, seconds))
+        true = abs(jumps[quantity] - each[quantity]) / each[quantity]
+        name = f"reported over true error of {quantity[: quantity.index(' [')]} [-]"
+        reported = jumps["error estimates"][estimate]
+        checks.append(Check(CASE, name, reported / max(true, 1e-12), 0.5, 0.0, seconds, bound="above"))
+    return checks

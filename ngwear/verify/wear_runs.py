@@ -1,0 +1,137 @@
+"""What the wear cases share: a block under a rigid cylinder that wears it, and runs of a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.geometry.contour import Contour
+from ngwear.materials import Hyperelastic
+from ngwear.scene import Accuracy, ContactSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
+from ngwear.stepper import State, Stepper
+from ngwear.surfaces import Cylinder
+from ngwear.verify.builders import rectangle
+
+CONTACT = "ring"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CylinderOnBlock:
+    """A rigid cylinder slides across the top of a block in plane strain and wears it; the bottom is bonded.
+
+    Parameters
+    ----------
+    material : Hyperelastic
+    radius : float
+        Of the cylinder [mm].
+    load : float
+        Force per thickness [N/mm].
+    wear_rate : float
+        Specific wear rate k [mm²/N].
+    size : float
+        Height and half width of the block [mm].
+    patch : float
+        Element edge in the contact [mm].
+    travel : float
+        Sliding distance of a stroke [mm].
+    """
+
+    material: Hyperelastic
+    radius: float
+    load: float
+    wear_rate: float
+    size: float
+    patch: float
+    travel: float
+    wear_error: float
+
+    def scene(self, name: str, marks: tuple[int, ...]) -> Scene:
+        """Scene whose jumps stop at the given strokes; the last of them ends it."""
+        size = self.size
+        ring = Cylinder(centre=(0.0, size + self.radius), radius=self.radius)
+        return Scene(
+            name=name,
+            contour=rectangle((-size, size), (0.0, size)),
+            material=self.material,
+            contacts=(
+                ContactSpec(
+                    name=CONTACT, edges=("top",), surface=ring, force=self.load, specific_wear_rate=self.wear_rate
+                ),
+            ),
+            supports=(SupportSpec(edges=("bottom",)),),
+            program=Program(cycle=(Stroke(name="turn", travel=self.travel),), strokes=marks[-1]),
+            accuracy=Accuracy(
+                patch=self.patch, coarse=size / 5, mounting=max(self.patch, 0.02), wear_error=self.wear_error
+            ),
+            wear=Wear(max_jump=marks[-1]),
+            save=Save(strokes=marks),
+        )
+
+
+@dataclass(frozen=True)
+class Book:
+    """The law's integrals, taken from the fields by quadrature at every solve, apart from the stepper's own book.
+
+    Attributes
+    ----------
+    worn : float
+        ``sum k ds int P / J dA`` [mm²].
+    load : float
+        Resultant of the pressure, averaged over the sliding [N/mm].
+    """
+
+    worn: float = 0.0
+    load: float = 0.0
+
+
+def steps(scene: Scene) -> Iterator[tuple[State, Book]]:
+    """Run a scene with one contact and one kind of stroke; yield the state after each accepted step."""
+    (spec,), (stroke,) = scene.contacts, scene.program.cycle
+    stepper = Stepper(scene)
+    state, book = stepper.start(), Book()
+    while not stepper.finished(state):
+        state = stepper.advance(state)
+        (report,) = state.reports
+        profile = report.contacts[spec.name]
+        distance = report.repeats * stroke.travel
+        load = abs(float(report.forces[spec.name][1]))
+        share = report.repeats / state.strokes
+        worn = spec.specific_wear_rate * distance * pressure_over_volume_ratio(scene, profile)
+        book = Book(book.worn + worn, book.load + share * (load - book.load))
+        yield state, book
+
+
+def pressure_over_volume_ratio(scene: Scene, profile: ContactProfile) -> float:
+    """``int P / J dA`` [N/mm] with Hooke's J under a frictionless surface: ln J = -2 p (1 + nu)(1 - 2 nu) / E.
+
+    In plane strain a half-plane's surface under the pressure p has the stresses -p along and across it.
+    """
+    shear, bulk = scene.material.shear_modulus, scene.material.bulk_modulus
+    # (1 + nu)(1 - 2 nu) / E = 1 / (2 (lambda + G)), lambda = K - 2 G / 3
+    compliance = 1 / (2 * (bulk + shear / 3))
+    return float(profile.load @ (1 + 2 * compliance * profile.nominal_pressure))
+
+
+def depth_at(contour: Contour, edge: str, top: float, x: float) -> float:
+    """Depth of the worn edge, a graph over x, below the height ``top`` [mm]."""
+    on = contour.on((edge,))
+    points = contour.points[on | np.roll(on, 1)]
+    points = points[np.argsort(points[:, 0])]
+    return top - float(np.interp(x, points[:, 0], points[:, 1]))
+
+
+def half_width(profile: ContactProfile) -> float:
+    """Half the distance between the outermost ends of the contact [mm]."""
+    zones = profile.zones()
+    ends = [end[0] for zone in zones for end in (zone.start, zone.end)]
+    return 0.5 * (max(ends) - min(ends))
+
+
+def middle_pressure(profile: ContactProfile, within: float) -> float:
+    """Mean Cauchy pressure over the nodes with |x| <= ``within`` [MPa]."""
+    x, order = profile.reference[:, 0], np.argsort(profile.reference[:, 0])
+    inside = order[np.abs(x[order]) <= within]
+    return float(profile.pressure[inside] @ profile.weight[inside] / profile.weight[inside].sum())
