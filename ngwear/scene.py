@@ -132,7 +132,7 @@ class Accuracy:
     order : int
         Polynomial order of the displacement.
     wear_error : float
-        Relative error of the worn area that the cycle jump may make.
+        Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side.
     """
 
     patch: float = 0.01
@@ -140,7 +140,7 @@ class Accuracy:
     mounting: float = 0.03
     grading: float = 0.25
     order: int = 2
-    wear_error: float = 0.01
+    wear_error: float = 0.03
 
     def __post_init__(self) -> None:
         _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")

@@ -1,5 +1,6 @@
 """Options, markers by folder, and a small scene that mounts and wears in a third of a second."""
 
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -136,6 +137,21 @@ def seal_text():
 def seal():
     """The shipped seal's scene."""
     return read_scene(SEAL)
+
+
+@pytest.fixture(scope="session")
+def _finished_once(tmp_path_factory):
+    from ngwear.run import run
+
+    folder = tmp_path_factory.mktemp("sheet")
+    run(read_scene(_write_sheet(folder)), out=folder / "out")
+    return folder / "out"
+
+
+@pytest.fixture
+def finished(_finished_once, tmp_path):
+    """A copy of the results of the small scene, with figures."""
+    return Path(shutil.copytree(_finished_once, tmp_path / "finished"))
 
 
 def _circle(n: int, radius: float = 1.0, centre=(0.0, 0.0)) -> Contour:

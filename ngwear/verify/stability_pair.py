@@ -64,8 +64,7 @@ def run() -> list[Check]:
         clock = Stopwatch()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # the scheme says itself that it is unstable
-            for state, _ in steps(scene(scheme, times)):
-                pass
+            *_, state = steps(scene(scheme, times))
         rough = roughness(state.reports[-1].contacts["plane"])
         law = WEAR_RATE * 2 * HALF * MEAN * STEPS * times * CRITICAL
         seconds = clock.seconds

@@ -37,6 +37,8 @@ class CylinderOnBlock:
         Element edge in the contact [mm].
     travel : float
         Sliding distance of a stroke [mm].
+    wear_error : float
+        Relative error of worn area that a jump may make [-].
     """
 
     material: Hyperelastic
@@ -71,9 +73,9 @@ class CylinderOnBlock:
         )
 
 
-@dataclass(frozen=True)
+@dataclass
 class Book:
-    """The law's integrals, taken from the fields by quadrature at every solve, apart from the stepper's own book.
+    """The law's integrals over the contact at every solve, apart from the stepper's own book; filled by ``steps``.
 
     Attributes
     ----------
@@ -87,11 +89,11 @@ class Book:
     load: float = 0.0
 
 
-def steps(scene: Scene) -> Iterator[tuple[State, Book]]:
+def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
     """Run a scene with one contact and one kind of stroke; yield the state after each accepted step."""
     (spec,), (stroke,) = scene.contacts, scene.program.cycle
-    stepper = Stepper(scene)
-    state, book = stepper.start(), Book()
+    stepper, book = Stepper(scene), book or Book()
+    state = stepper.start()
     while not stepper.finished(state):
         state = stepper.advance(state)
         (report,) = state.reports
@@ -99,9 +101,9 @@ def steps(scene: Scene) -> Iterator[tuple[State, Book]]:
         distance = report.repeats * stroke.travel
         load = abs(float(report.forces[spec.name][1]))
         share = report.repeats / state.strokes
-        worn = spec.specific_wear_rate * distance * pressure_over_volume_ratio(scene, profile)
-        book = Book(book.worn + worn, book.load + share * (load - book.load))
-        yield state, book
+        book.worn += spec.specific_wear_rate * distance * pressure_over_volume_ratio(scene, profile)
+        book.load += share * (load - book.load)
+        yield state
 
 
 def pressure_over_volume_ratio(scene: Scene, profile: ContactProfile) -> float:

@@ -1,0 +1,43 @@
+"""Problem P1a with ngwear, one load step, the whole sheet: the subject of ``test_race_p1a.py``.
+
+Triangles of order 2: small under the cylinder, where the pressure ends and along the bonded bottom, large elsewhere.
+
+Usage: python p1a_ngwear.py
+"""
+
+import numpy as np
+
+from ngwear.effects.contact import Contact
+from ngwear.effects.elasticity import Elasticity
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.stepping import advance
+from ngwear.fields.kinematics import PlaneStrain
+from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.sizing import SizeField
+from ngwear.materials import MooneyRivlin
+from ngwear.surfaces import Cylinder
+
+WIDTH, THICKNESS, RADIUS, DEPTH = 20.0, 2.0, 5.0, 0.30
+PATCH, BOTTOM, COARSE = 0.15, 0.25, 0.6  # element edges [mm]
+
+
+def main():
+    """Solve and print the force [N/mm]."""
+    corners = np.array([[-WIDTH / 2, 0.0], [WIDTH / 2, 0.0], [WIDTH / 2, THICKNESS], [-WIDTH / 2, THICKNESS]])
+    outline = Contour(corners, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
+    top = [(x, THICKNESS) for x in np.arange(-2.0, 2.01, PATCH)]
+    bottom = [(x, 0.0) for x in np.arange(-2.5, 2.51, BOTTOM)]
+    sizes = np.repeat([PATCH, BOTTOM], [len(top), len(bottom)])
+    body = Body(outline, SizeField(np.array(top + bottom), sizes, COARSE))
+
+    rubber = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0)
+    cylinder = Cylinder(centre=(0.0, THICKNESS + RADIUS), radius=RADIUS)
+    contact = Contact("roller", ("top",), cylinder, modulus=rubber.shear_modulus)
+    problem = Problem(body, PlaneStrain(), [Elasticity(rubber), contact], supports=[Support(("bottom",))])
+    work = advance(problem, {"roller approach [mm]": DEPTH})
+    print(f"dofs {problem.space.ndof} iterations {work.iterations} force {-contact.force()[1]:.6f}")  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()

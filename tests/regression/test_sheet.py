@@ -1,0 +1,20 @@
+"""Numbers that the small scene has had; a change beyond these bounds needs a reason."""
+
+import pytest
+
+from ngwear.run import run
+
+SUMMARY = {
+    "worn area [mm^2]": 0.020284,
+    "maximum depth [mm]": 0.023549,
+    "first stroke roller peak pressure [MPa]": 0.60243,
+    "last stroke roller peak pressure [MPa]": 0.54911,
+}
+
+
+def test_sheet_under_a_roller(sheet):
+    result = run(sheet)
+    for name, value in SUMMARY.items():
+        assert result.summary[name] == pytest.approx(value, rel=5e-3), name
+    assert result.summary["solves"] <= 20
+    assert result.summary["retries"] == 0

@@ -1,0 +1,206 @@
+import csv
+import errno
+import io
+import json
+import os
+import pickle
+import resource
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ngwear.errors import ResultError
+from ngwear.plot import plot, read_result
+from ngwear.results import CHECKPOINT, FIELDS, SERIES, SUMMARY, Folder, Recorder, depths, fingerprint
+from ngwear.scenefile import read_scene
+
+CHANGES = [
+    ("shear = 1.0", "shear = 1.0000001"),
+    ("force = 0.5", "force = 0.51"),
+    ("friction = 0.1", "friction = 0.2"),
+    ("1.0e-3", "1.1e-3"),
+    ("strokes = 4", "strokes = 5"),
+    ("travel = 10.0", "travel = 10.5"),
+    ("patch = 0.1", "patch = 0.09"),
+    ("radius = 2.0", "radius = 1.99"),
+    ('[[support]]\nedges = ["bottom"]', '[[support]]\nedges = ["bottom"]\nx = false'),
+]
+
+
+def test_fingerprint_is_the_same_for_two_reads(sheet_file):
+    assert fingerprint(read_scene(sheet_file)) == fingerprint(read_scene(sheet_file))
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_fingerprint_changes_with_the_scene(tmp_path, sheet, write_sheet, change):
+    assert fingerprint(read_scene(write_sheet(tmp_path / "other", change))) != fingerprint(sheet)
+
+
+def test_fingerprint_changes_with_the_outline(sheet):
+    moved = sheet.contour.moved(np.where(np.arange(len(sheet.contour))[:, None] == 9, 1e-9, 0.0))
+    assert fingerprint(replace(sheet, contour=moved)) != fingerprint(sheet)
+    renamed = replace(sheet.contour, names=("floor",) * 2 + sheet.contour.names[2:])
+    assert fingerprint(replace(sheet, contour=renamed)) != fingerprint(sheet)
+
+
+def test_depth_of_a_lowered_top(rectangle):
+    before, after = rectangle(4.0, 2.0, 8, 4), rectangle(4.0, 1.9, 8, 4)
+    depth = depths(before, after)
+    assert depth[np.isclose(before.points[:, 1], 2.0)] == pytest.approx(0.1)
+    assert depth[np.isclose(before.points[:, 1], 0.0)] == pytest.approx(0.0, abs=1e-15)
+
+
+def test_file_is_replaced_as_a_whole(tmp_path, sheet):
+    folder = Folder(tmp_path / "out", sheet, resume=False)
+    folder._replace("a.txt", lambda file: file.write(b"old"))
+
+    def fails(file):
+        file.write(b"half of the ne")
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with pytest.raises(ResultError, match=r"a\.txt cannot be written: No space left.*last saved state is kept.*resume"):
+        folder._replace("a.txt", fails)
+    assert (folder.path / "a.txt").read_bytes() == b"old"
+    assert [p.name for p in folder.path.iterdir()] == ["a.txt"], "no temporary file is left"
+
+
+def test_interrupted_write_leaves_the_old_file(tmp_path, sheet):
+    folder = Folder(tmp_path / "out", sheet, resume=False)
+    folder._replace("a.txt", lambda file: file.write(b"old"))
+
+    def interrupted(file):
+        file.write(b"half")
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        folder._replace("a.txt", interrupted)
+    assert (folder.path / "a.txt").read_bytes() == b"old"
+    assert [p.name for p in folder.path.iterdir()] == ["a.txt"]
+
+
+def test_fields_that_do_not_fit_on_the_disk(finished, sheet):
+    """The limit on the size of a file is a full disk that needs no root; HDF5 has to pass the error on."""
+    recorder = pickle.loads((finished / CHECKPOINT).read_bytes())["recorder"]
+    before = (finished / FIELDS).read_bytes()
+    folder = Folder(finished, sheet, resume=True)
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) // 3, hard))
+    try:
+        with pytest.raises(ResultError, match=r"result\.h5 cannot be written"):
+            folder.finish(recorder, {"status": "completed"})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert (finished / FIELDS).read_bytes() == before
+    assert not list(finished.glob(".*")), "no temporary file is left"
+
+
+def test_result_file_holds_the_run(finished, sheet):
+    result = read_result(finished)
+    summary = json.loads((finished / SUMMARY).read_text())
+    assert result.scene == "sheet"
+    assert (result.outline == sheet.contour.points).all()
+    assert [s.stroke for s in result.snapshots] == [0, 1, 2, 3, 4]
+    assert result.kinds == ["stroke"]
+    assert result.series["maximum depth [mm]"][-1] == summary["maximum depth [mm]"]
+    assert result.snapshots[0].mesh["triangles"].shape[1] == 3
+    assert result.at(2.2, "stroke").stroke == 2
+
+
+def test_series_in_the_result_file_is_the_csv(finished):
+    rows = list(csv.DictReader(io.StringIO((finished / SERIES).read_text())))
+    series = read_result(finished).series
+    assert set(series) == set(rows[0])
+    for column in set(rows[0]) - {"kind [-]"}:
+        assert [float(row[column]) for row in rows] == pytest.approx(list(series[column]), rel=1e-12), column
+
+
+def test_profiles_balance_the_force(finished):
+    """Pressure times length over the deformed contact is the prescribed force (few nodes: a coarse check)."""
+    for snapshot in read_result(finished).snapshots:
+        profile = snapshot.profiles["roller"]
+        order = np.argsort(profile["place [mm]"][:, 0])
+        p, x = profile["pressure [MPa]"][order], profile["place [mm]"][order, 0]
+        force = np.diff(x) @ (p[:-1] + p[1:]) / 2
+        assert force == pytest.approx(0.5, rel=0.05)
+
+
+DAMAGE = {
+    "truncated": lambda data: data[: len(data) // 2],
+    "cut short": lambda data: data[:-100],
+    "empty": lambda data: b"",
+    "garbage": lambda data: bytes(range(256)) * 40,
+    "overwritten": lambda data: data[:512] + bytes(len(data) - 512),
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_damaged_result_file_is_refused(finished, damage):
+    file = finished / FIELDS
+    file.write_bytes(DAMAGE[damage](file.read_bytes()))
+    with pytest.raises(ResultError, match=r"result\.h5 cannot be read as a result of ngwear"):
+        plot(finished)
+
+
+@pytest.mark.parametrize("missing", ["strokes", "series", "outline", "strokes/00000/outline [mm]"])
+def test_result_file_without_a_part_is_refused(finished, missing):
+    import h5py
+
+    with h5py.File(finished / FIELDS, "r+") as h5:
+        del h5[missing]
+    with pytest.raises(ResultError, match=r"result\.h5 cannot be read as a result of ngwear"):
+        plot(finished)
+
+
+def test_hdf5_file_of_another_program_is_refused(tmp_path):
+    import h5py
+
+    with h5py.File(tmp_path / FIELDS, "w") as h5:
+        h5["strokes"] = [1, 2, 3]
+        h5["series"] = [1, 2, 3]
+    with pytest.raises(ResultError, match=r"result\.h5 cannot be read as a result of ngwear"):
+        plot(tmp_path)
+
+
+def test_result_file_that_lost_a_column_or_a_profile_is_refused(finished):
+    import h5py
+
+    with h5py.File(finished / FIELDS, "r+") as h5:
+        del h5["series/maximum depth [mm]"]
+    with pytest.raises(ResultError, match="maximum depth"):
+        plot(finished)
+
+
+def test_missing_result_file_says_what_to_give(tmp_path):
+    with pytest.raises(ResultError, match=r"result\.h5 does not exist: give the folder of a run"):
+        plot(tmp_path)
+
+
+def test_picture_that_cannot_be_written(finished):
+    (finished / "mesh.png").unlink(missing_ok=True)
+    (finished / "mesh.png").mkdir()
+    with pytest.raises(ResultError, match=r"mesh\.png cannot be written"):
+        plot(finished)
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_damaged_checkpoint_is_refused_with_the_remedy(finished, sheet, damage):
+    file = finished / CHECKPOINT
+    file.write_bytes(DAMAGE[damage](file.read_bytes()))
+    with pytest.raises(ResultError, match=r"checkpoint\.pkl cannot be read.*remove the folder and run again"):
+        Folder(finished, sheet, resume=True).load()
+
+
+@pytest.mark.parametrize("content", [[1, 2], {"scene": "x"}, None])
+def test_checkpoint_of_something_else_is_refused(finished, sheet, content):
+    (finished / CHECKPOINT).write_bytes(pickle.dumps(content))
+    with pytest.raises(ResultError, match=r"checkpoint\.pkl cannot be read"):
+        Folder(finished, sheet, resume=True).load()
+
+
+def test_folder_without_a_run_has_nothing_to_go_on_with(tmp_path, sheet):
+    assert Folder(tmp_path / "new", sheet, resume=True).load() is None
+
+
+def test_recorder_of_an_empty_run_is_plain_data(sheet):
+    assert pickle.loads(pickle.dumps(Recorder(sheet))).rows == []

@@ -1,0 +1,398 @@
+import csv
+import errno
+import io
+import itertools
+import json
+import logging
+import os
+import pickle
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError
+from ngwear.results import CHECKPOINT, FIELDS, SERIES, SUMMARY, Folder
+from ngwear.run import COMPLETED, GAVE_UP, run
+from ngwear.scenefile import read_scene
+from ngwear.stepper import Stepper
+
+FILES = {SERIES, FIELDS, SUMMARY, CHECKPOINT}
+CONTRACT = {
+    "status",
+    "solves",
+    "retries",
+    "error estimates",
+    "wall time [s]",
+    "CPU time [s]",
+    "maximum depth [mm]",
+    "peak pressure [MPa]",
+}
+NOT_REPEATABLE = {"wall time [s]", "CPU time [s]", "peak memory [MB]"}
+CLI = "import sys; from ngwear.cli import main; sys.exit(main(sys.argv[1:]))"
+
+
+def summary_of(folder):
+    return json.loads((folder / SUMMARY).read_text())
+
+
+def rows_of(folder):
+    return list(csv.DictReader(io.StringIO((folder / SERIES).read_text())))
+
+
+def numbers(summary):
+    """All numbers of a summary, flat, but for times and memory."""
+    flat = {}
+    for key, value in summary.items():
+        if key in NOT_REPEATABLE:
+            continue
+        if isinstance(value, dict):
+            flat |= {f"{key}/{k}": v for k, v in value.items()}
+        else:
+            flat[key] = value
+    return flat
+
+
+def assert_same(found, expected):
+    found, expected = numbers(found), numbers(expected)
+    assert set(found) == set(expected)
+    for key, value in expected.items():
+        if isinstance(value, float):
+            assert found[key] == pytest.approx(value, rel=1e-9, abs=1e-11), key
+        else:
+            assert found[key] == value, key
+
+
+def assert_same_rows(found, expected):
+    assert len(found) == len(expected)
+    for mine, theirs in zip(found, expected, strict=True):
+        for key in set(theirs) - {"wall time [s]", "kind [-]"}:
+            assert float(mine[key]) == pytest.approx(float(theirs[key]), rel=1e-9, abs=1e-12), key
+
+
+def test_run_leaves_the_files_of_the_contract(finished):
+    assert {p.name for p in finished.iterdir()} >= FILES | {"history.png", "profiles.png"}
+    assert not list(finished.glob(".*")), "no temporary file is left"
+    summary = summary_of(finished)
+    assert set(summary) >= CONTRACT
+    assert summary["status"] == COMPLETED
+    assert summary["strokes"] == 4
+    assert summary["wall time [s]"] > 0
+    assert summary["CPU time [s]"] > 0
+
+
+def test_every_column_has_its_unit(finished):
+    rows = rows_of(finished)
+    assert rows
+    for column in rows[0]:
+        assert re.fullmatch(r".* \[.*\]", column), column
+    assert [int(row["stroke [-]"]) for row in rows] == [0, 1, 2, 3, 4]
+    assert [float(row["sliding distance [mm]"]) for row in rows] == [0, 10, 20, 30, 40]
+
+
+def test_worn_area_is_archards(finished):
+    """k F s / J: 1e-3 mm²/N x 0.5 N/mm x 10 mm a stroke; J within p / K = 0.6 % to first order of 1, times 2."""
+    worn = [float(row["worn area by the law [mm^2]"]) for row in rows_of(finished)]
+    steps = [b - a for a, b in itertools.pairwise(worn)]
+    assert steps == pytest.approx([5e-3] * 4, rel=0.02)
+    summary = summary_of(finished)
+    assert summary["worn area [mm^2]"] == pytest.approx(summary["worn area by the law [mm^2]"], rel=1e-6)
+    assert summary["error estimates"]["area against the law [-]"] < 1e-6
+
+
+def test_wear_lowers_the_pressure_and_deepens_steadily(finished):
+    rows = rows_of(finished)
+    peak = [float(row["roller peak pressure [MPa]"]) for row in rows]
+    depth = [float(row["maximum depth [mm]"]) for row in rows]
+    assert peak == sorted(peak, reverse=True), "a wider track carries the same force"
+    assert depth == sorted(depth)
+    assert depth[0] == 0.0
+    assert depth[-1] > 0.01
+
+
+def test_force_and_friction_obey_coulomb(finished):
+    for row in rows_of(finished):
+        normal = float(row["roller force y [N/mm]"]) + float(row["roller friction force y [N/mm]"])
+        along = float(row["roller force x [N/mm]"]) + float(row["roller friction force x [N/mm]"])
+        assert normal == pytest.approx(-0.5, rel=0.03)
+        assert float(row["roller force y [N/mm]"]) == pytest.approx(-0.5, rel=1e-6), "however worn the outline is"
+        assert abs(along) == pytest.approx(0.1 * 0.5, rel=0.05)
+
+
+def test_wearless_run_wears_nothing(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, ("1.0e-3", "0.0"), ("friction = 0.1", "refine = true")))
+    result = run(scene, figures=False)
+    assert result.status == COMPLETED
+    assert result.summary["maximum depth [mm]"] == 0.0
+    assert result.summary["worn area [mm^2]"] == 0.0
+
+
+def test_run_without_a_folder_writes_nothing(tmp_path, sheet, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    before = sorted(tmp_path.rglob("*"))
+    assert run(sheet).summary["strokes"] == 4
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_no_strokes_is_only_mounted(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, ("strokes = 4", "strokes = 0")))
+    result = run(scene, out=tmp_path / "out")
+    assert result.status == COMPLETED
+    assert result.summary["maximum depth [mm]"] == 0.0
+    assert result.summary["peak pressure [MPa]"] > 0.3
+
+
+@pytest.mark.parametrize("centre", [3.99, 4.0, 4.2])
+def test_roller_under_force_finds_the_sheet_from_where_it_is(tmp_path, write_sheet, centre):
+    """A surface under force may start inside the part, just touching it, or away from it: the rest is the same."""
+    scene = read_scene(write_sheet(tmp_path, ("3.99", str(centre)), ("strokes = 4", "strokes = 1")))
+    result = run(scene, figures=False)
+    assert result.summary["peak pressure [MPa]"] == pytest.approx(0.591, rel=0.02)
+
+
+def test_folder_that_holds_a_run_is_not_overwritten(finished, sheet):
+    before = {p.name: p.read_bytes() for p in finished.iterdir()}
+    with pytest.raises(ResultError, match=r"already holds a run: go on with --resume, or give another folder"):
+        run(sheet, out=finished)
+    assert {p.name: p.read_bytes() for p in finished.iterdir()} == before
+
+
+def test_resume_of_a_finished_run_changes_nothing(finished, sheet):
+    before, rows = summary_of(finished), rows_of(finished)
+    result = run(sheet, out=finished, resume=True)
+    assert result.status == COMPLETED
+    assert_same(summary_of(finished), before)
+    assert_same_rows(rows_of(finished), rows)
+
+
+def test_resume_writes_a_series_that_a_kill_has_left_behind(finished, sheet):
+    """The checkpoint is written before the series: a kill between the last two leaves the series a step behind."""
+    series = finished / SERIES
+    complete = rows_of(finished)
+    series.write_text("\n".join(series.read_text().splitlines()[:-1]) + "\n")
+    run(sheet, out=finished, resume=True, figures=False)
+    assert_same_rows(rows_of(finished), complete)
+
+
+def test_resume_with_a_changed_scene_is_refused(tmp_path, finished, write_sheet):
+    scene = read_scene(write_sheet(tmp_path / "other", ("shear = 1.0", "shear = 1.1")))
+    before = (finished / CHECKPOINT).read_bytes()
+    with pytest.raises(ResultError, match=r"another scene \(or of a changed one\): give another folder"):
+        run(scene, out=finished, resume=True)
+    assert (finished / CHECKPOINT).read_bytes() == before
+
+
+def test_resume_with_a_damaged_checkpoint_is_refused(finished, sheet):
+    (finished / CHECKPOINT).write_bytes((finished / CHECKPOINT).read_bytes()[:3000])
+    with pytest.raises(ResultError, match=r"checkpoint\.pkl cannot be read.*remove the folder"):
+        run(sheet, out=finished, resume=True)
+
+
+def test_resume_of_nothing_starts(tmp_path, sheet, finished):
+    run(sheet, out=tmp_path / "new", resume=True, figures=False)
+    assert_same(summary_of(tmp_path / "new"), summary_of(finished))
+
+
+def stop_after(monkeypatch, strokes, error):
+    """Let ``advance`` raise once that many strokes are done."""
+    real = Stepper.advance
+
+    def advance(self, state):
+        if state.strokes >= strokes:
+            raise error
+        return real(self, state)
+
+    monkeypatch.setattr(Stepper, "advance", advance)
+
+
+@pytest.mark.parametrize("strokes", [0, 2])
+def test_interrupted_and_resumed_is_the_same_as_uninterrupted(tmp_path, sheet, finished, monkeypatch, strokes):
+    out = tmp_path / "out"
+    with monkeypatch.context() as patch:
+        stop_after(patch, strokes, KeyboardInterrupt)
+        with pytest.raises(KeyboardInterrupt):
+            run(sheet, out=out, figures=False)
+    assert {p.name for p in out.iterdir()} == {CHECKPOINT, SERIES}
+    assert len(rows_of(out)) == strokes + 1
+    run(sheet, out=out, resume=True, figures=False)
+    assert_same(summary_of(out), summary_of(finished))
+    assert_same_rows(rows_of(out), rows_of(finished))
+
+
+def jumping(folder, write_sheet):
+    """A scene with a cycle of two strokes that jumps and remeshes."""
+    back = 'travel = 10.0\n[[program.stroke]]\nname = "back"\ntravel = 5.0\ndirection = -1'
+    return write_sheet(
+        folder,
+        ("strokes = 4", "strokes = 16"),
+        ("travel = 10.0", back),
+        ('step = "each"', 'step = "jump"'),
+        ("patch = 0.1", "patch = 0.1\nwear_error = 0.05"),
+    )
+
+
+@pytest.mark.parametrize("stop", [2, 6])
+def test_resume_of_jumps_over_a_cycle_of_two_strokes(tmp_path, write_sheet, monkeypatch, stop):
+    scene = read_scene(jumping(tmp_path, write_sheet))
+    whole = run(scene, out=tmp_path / "whole", figures=False)
+    assert whole.summary["strokes"] == 16
+    assert whole.summary["solves"] < 60
+    with monkeypatch.context() as patch:
+        stop_after(patch, stop, KeyboardInterrupt)
+        with pytest.raises(KeyboardInterrupt):
+            run(scene, out=tmp_path / "parts", figures=False)
+    run(scene, out=tmp_path / "parts", resume=True, figures=False)
+    assert_same(summary_of(tmp_path / "parts"), summary_of(tmp_path / "whole"))
+    assert_same_rows(rows_of(tmp_path / "parts"), rows_of(tmp_path / "whole"))
+
+
+def test_strokes_to_be_kept_are_not_passed_over(tmp_path, write_sheet):
+    file = jumping(tmp_path, write_sheet)
+    file.write_text(file.read_text() + "[save]\nstrokes = [6]\n")
+    result = run(read_scene(file), figures=False)
+    assert 6 in [row["stroke [-]"] for row in result.recorder.rows]
+    assert result.summary["strokes"] == 16
+
+
+def test_killed_and_resumed_is_the_same_as_uninterrupted(tmp_path, write_sheet):
+    """A kill at a moment that nobody chose."""
+    file = write_sheet(tmp_path, ("strokes = 4", "strokes = 40"))
+    scene = read_scene(file)
+    run(scene, out=tmp_path / "whole", figures=False)
+    out = tmp_path / "killed"
+    process = subprocess.Popen([sys.executable, "-c", CLI, "run", str(file), "--out", str(out), "--quiet"])
+    try:
+        deadline = time.monotonic() + 30
+        while not (out / CHECKPOINT).exists():
+            assert time.monotonic() < deadline, "no checkpoint within 30 s"
+            assert process.poll() is None, "ended before its first checkpoint"
+            time.sleep(0.002)
+        time.sleep((time.time_ns() // 1000 % 600) / 1000)
+    finally:
+        process.send_signal(signal.SIGKILL)
+        assert process.wait() == -signal.SIGKILL
+    assert not (out / SUMMARY).exists()
+    left = Folder(out, scene, resume=True).load()
+    assert left is not None
+    assert left[0].strokes < 40
+    run(scene, out=out, resume=True, figures=False)
+    assert_same(summary_of(out), summary_of(tmp_path / "whole"))
+    assert_same_rows(rows_of(out), rows_of(tmp_path / "whole"))
+    assert not list(out.glob(".*")), "what the kill left half-written is cleared away"
+
+
+@pytest.mark.parametrize("fails", [1, 2, 3, 6])
+def test_full_disk_keeps_the_last_state_and_says_what_to_do(tmp_path, sheet, finished, monkeypatch, fails):
+    out, calls, real = tmp_path / "out", [], os.fsync
+
+    def fsync(handle):
+        calls.append(handle)
+        if len(calls) == fails:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        real(handle)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "fsync", fsync)
+        with pytest.raises(ResultError, match=r"cannot be written: No space left.*free some space.*--resume"):
+            run(sheet, out=out, figures=False)
+    assert not list(out.glob(".*")), "no temporary file is left"
+    assert (out / CHECKPOINT).exists() == (fails > 1)
+    result = run(sheet, out=out, resume=True, figures=False)
+    assert result.status == COMPLETED
+    assert_same(summary_of(out), summary_of(finished))
+    assert_same_rows(rows_of(out), rows_of(finished))
+
+
+def test_force_far_too_high_gives_up_while_mounting_and_says_so(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, ("force = 0.5", "force = 500.0")))
+    result = run(scene, out=tmp_path / "out", throw=False)
+    assert result.status == GAVE_UP
+    assert isinstance(result.error, ConvergenceError)
+    assert result.state is None
+    assert re.search(r"mount", result.message), result.message
+    assert "roller force" in result.message
+    summary = summary_of(tmp_path / "out")
+    assert summary["status"] == GAVE_UP
+    assert summary["strokes"] == 0
+    assert summary["message"] == result.message
+    assert {"wall time [s]", "CPU time [s]"} <= set(summary), "what it cost is known"
+
+
+@pytest.fixture
+def through(tmp_path, write_sheet):
+    """A sheet of 0.3 mm that the roller wears through after some strokes."""
+    outline = (
+        "[[edge]]\nname = 'bottom'\npoints = [[0, 0]]\n[[edge]]\nname = 'right'\npoints = [[2, 0]]\n"
+        "[[edge]]\nname = 'top'\npoints = [[2, 0.3], [1.75, 0.3], [1.5, 0.3], [1.25, 0.3], [1, 0.3], [0.75, 0.3], "
+        "[0.5, 0.3], [0.25, 0.3]]\n[[edge]]\nname = 'left'\npoints = [[0, 0.3]]\n"
+    )
+    return write_sheet(
+        tmp_path,
+        ("centre = [2.0, 3.99], radius = 2.0", "centre = [1.0, 0.79], radius = 0.5"),
+        ("1.0e-3", "1.0e-2"),
+        ("strokes = 4", "strokes = 100"),
+        ("coarse = 0.5", "coarse = 0.1"),
+        ("mounting = 0.15", "mounting = 0.1"),
+        ("patch = 0.1", "patch = 0.05"),
+        outline=outline,
+    )
+
+
+def test_worn_through_gives_up_with_place_stroke_and_what_it_had(tmp_path, through):
+    scene = read_scene(through)
+    result = run(scene, out=tmp_path / "out", throw=False)
+    assert result.status == GAVE_UP
+    assert isinstance(result.error, NgwearError)
+    done = result.summary["strokes"]
+    assert 0 < done < 100
+    rows = rows_of(tmp_path / "out")
+    assert int(rows[-1]["stroke [-]"]) == done, "what it had is saved"
+    depth = result.summary["maximum depth [mm]"]
+    assert 0.1 < depth < 0.3
+    assert summary_of(tmp_path / "out")["status"] == GAVE_UP
+    assert {p.name for p in (tmp_path / "out").iterdir()} >= FILES | {"history.png"}
+    assert re.search(rf"after stroke {done}\b", result.message), result.message
+
+
+def test_giving_up_raises_if_asked_to_and_saves_before(tmp_path, sheet, monkeypatch):
+    stop_after(monkeypatch, 2, GeometryError("the section is worn through near [1, 2]"))
+    with pytest.raises(GeometryError, match="worn through near"):
+        run(sheet, out=tmp_path / "out", figures=False)
+    summary = summary_of(tmp_path / "out")
+    assert summary["status"] == GAVE_UP
+    assert summary["strokes"] == 2
+    assert "worn through near" in summary["message"]
+
+
+def test_failed_jump_is_taken_back_and_halved(tmp_path, write_sheet, monkeypatch, caplog):
+    """A step that fails once leaves no trace but a retry."""
+    scene = read_scene(jumping(tmp_path, write_sheet))
+    real, failed = Stepper._wear, []
+
+    def wear(self, state, index, distance):
+        if distance > 10 and not failed:
+            failed.append(state.strokes)
+            real(self, state, index, distance)
+            raise GeometryError("made to fail")
+        return real(self, state, index, distance)
+
+    monkeypatch.setattr(Stepper, "_wear", wear)
+    with caplog.at_level(logging.INFO):
+        result = run(scene, figures=False)
+    assert failed
+    assert "made to fail" in caplog.text
+    assert result.status == COMPLETED
+    assert result.summary["retries"] >= 1
+    strokes = [row["stroke [-]"] for row in result.recorder.rows]
+    assert strokes == sorted(strokes)
+    worn = result.summary["worn area by the law [mm^2]"]
+    assert worn == pytest.approx(1e-3 * 0.5 * (8 * 10 + 8 * 5), rel=0.02)
+
+
+def test_checkpoint_holds_scene_state_and_records(finished):
+    saved = pickle.loads((finished / CHECKPOINT).read_bytes())
+    assert set(saved) == {"scene", "state", "recorder"}
+    assert saved["state"].strokes == 4
