@@ -11,7 +11,8 @@ from typing import Any
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.results import Folder, Recorder
 from ngwear.scene import Scene
-from ngwear.stepper import State, Stepper
+from ngwear.state import State
+from ngwear.stepper import Stepper
 
 COMPLETED, GAVE_UP = "completed", "gave up"
 
@@ -103,7 +104,8 @@ def run(
             error = failure
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
-    message = "all strokes done" if error is None else str(error)
+    strokes = 0 if state is None else state.strokes
+    message = "all strokes done" if error is None else f"after stroke {strokes}: {error}"
     summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0}
     if state is not None:
         summary = recorder.summary(state, status, message)

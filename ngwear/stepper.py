@@ -6,21 +6,21 @@ import logging
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.contact_profile import ContactProfile
-from ngwear.equilibrium.carry import carry
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
-from ngwear.geometry.recession import recede, tidied
+from ngwear.geometry.recession import recede
+from ngwear.remesh import is_due, remesh
 from ngwear.scene import Scene
 from ngwear.stage import Stage, mounting_field
+from ngwear.state import Phase, State, StrokeReport
 from ngwear.wear.archard import critical_distance, worn_share
 from ngwear.wear.control import JumpControl
 
@@ -28,116 +28,6 @@ Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
-SHORTEST = 0.4  # of its length when meshed: how short a segment may become before the outline is tidied
-REMESH_DEPTH = 1.0  # of the patch's edge: how far the outline may move on one mesh
-
-
-@dataclass
-class Phase:
-    """What is kept of one stroke of the cycle, for the same stroke of the next one.
-
-    Attributes
-    ----------
-    vector : array
-        Equilibrium of the last time.
-    rate : array or None
-        Its change per cycle, on the same mesh.
-    pressure : array, shape (n,)
-        Nominal pressure of all wearing contacts at the contour points [MPa], of the last time.
-    """
-
-    vector: Array
-    rate: Array | None = None
-    pressure: Array | None = None
-
-
-@dataclass
-class Ledger:
-    """Book of worn material and of the errors made.
-
-    Attributes
-    ----------
-    worn : float
-        int W dA by the law, as section area [mm²].
-    removed : float
-        Area taken off the outline's polygon [mm²].
-    area_error : float
-        Sum of the steps' embedded errors of worn area [mm²].
-    depth_error : float
-        Largest sum of the embedded errors of depth at one point of the outline [mm].
-    remesh_jump : float
-        Largest relative change of the section's area in a remesh [-].
-    """
-
-    worn: float = 0.0
-    removed: float = 0.0
-    area_error: float = 0.0
-    depth_error: float = 0.0
-    remesh_jump: float = 0.0
-    remeshes: int = 0
-
-
-@dataclass
-class State:
-    """An accepted state of a run; ``Stepper.advance`` turns one into the next."""
-
-    stage: Stage
-    phases: list[Phase]
-    control: JumpControl
-    strokes: int = 0
-    ledger: Ledger = field(default_factory=Ledger)
-    work: Work = field(default_factory=Work)
-    depth_error: Array | None = None
-    reports: list[StrokeReport] = field(default_factory=list)
-
-    def __getstate__(self) -> dict[str, Any]:
-        saved = dict(self.__dict__)
-        saved["stage"] = (self.stage.scene, self.stage.body)
-        return saved
-
-    def __setstate__(self, saved: dict[str, Any]) -> None:
-        self.__dict__.update(saved)
-        self.stage = Stage(*saved["stage"])
-
-    @property
-    def contour(self) -> Contour:
-        """The outline as it is now."""
-        return self.stage.body.contour
-
-
-@dataclass(frozen=True)
-class StrokeReport:
-    """One solved stroke: its equilibrium, and the outline after its wear.
-
-    Attributes
-    ----------
-    phase : int
-        Which stroke of the cycle.
-    last_stroke, repeats : int
-        Number of the last stroke that this solve stands for, and how many of its kind it stands for.
-    iterations : int
-        Newton iterations.
-    contacts : dict of str to ContactProfile
-        The followed contacts at equilibrium.
-    forces : dict of str to array, shape (2,)
-        Resultants on the part [N, or N/mm].
-    leaks : bool
-        Whether the fluid meets no contact.
-    contour : Contour
-        Outline after the stroke's wear.
-    ledger : Ledger
-        Book after the stroke's wear.
-    """
-
-    phase: int
-    last_stroke: int
-    repeats: int
-    iterations: int
-    contacts: dict[str, ContactProfile]
-    forces: dict[str, Array]
-    leaks: bool
-    contour: Contour
-    ledger: Ledger
 
 
 class Stepper:
@@ -189,7 +79,7 @@ class Stepper:
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
         while state.stage.outgrown([p.vector for p in state.phases]) and state.ledger.remeshes < 4:
-            self._remesh(state)
+            remesh(state)
             state.reports = []
             for i, stroke in enumerate(scene.program.cycle):
                 iterations = self._solve_phase(state, i, stroke)
@@ -300,7 +190,8 @@ class Stepper:
                     ledger=replace(state.ledger),
                 )
             )
-        self._remesh_if_needed(state)
+        if is_due(state):
+            remesh(state)
         worn = state.ledger.worn - worn_before
         if not known:
             return math.nan
@@ -395,7 +286,7 @@ class Stepper:
         removed = contour.area - new.area
         if abs(removed - share.sum()) > AREA_GATE * share.sum():
             raise GeometryError(
-                f"the outline lost {removed:.4g} mm² where the law wears {share.sum():.4g} mm²: it had to be healed too far"
+                f"the outline lost {removed:.4g} mm² where the law wears {share.sum():.4g} mm²: healing took too much"
             )
         state.ledger.removed += removed
         if len(new) == len(contour):
@@ -404,36 +295,8 @@ class Stepper:
                 return known
             except MeshError as error:
                 log.info("%s: a new mesh is needed", error)
-        self._remesh(state, new)
+        remesh(state, new)
         return known
-
-    def _remesh_if_needed(self, state: State) -> None:
-        body = state.stage.body
-        moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
-        outgrown = state.stage.outgrown([p.vector for p in state.phases])
-        shrunk = np.min(body.contour.lengths / body.base.lengths) < SHORTEST
-        if outgrown or shrunk or moved > REMESH_DEPTH * self.scene.accuracy.patch:
-            self._remesh(state)
-
-    def _remesh(self, state: State, contour: Contour | None = None) -> None:
-        """Mesh the present (or the given) outline anew, fine where the contact is, and carry all states over."""
-        old = state.stage
-        contour = old.body.contour if contour is None else contour
-        wanted = old.wanted_size([p.vector for p in state.phases])
-        tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
-        state.ledger.remesh_jump = max(state.ledger.remesh_jump, abs(tidy.area - contour.area) / contour.area)
-        body = Body(tidy, wanted)
-        stage = Stage(self.scene, body)
-        vectors = carry(old.problem, [p.vector for p in state.phases], stage.problem)
-        before, after = old.body.contour, body.contour
-        for phase, vector in zip(state.phases, vectors, strict=True):
-            phase.vector, phase.rate = vector, None
-            if phase.pressure is not None:
-                phase.pressure = _moved_values(before, after, phase.pressure)
-        if state.depth_error is not None:
-            state.depth_error = _moved_values(before, after, state.depth_error)
-        state.stage = stage
-        state.ledger.remeshes += 1
 
 
 def _at_points(contour: Contour, profile: Any, values: Array) -> Array:
@@ -446,11 +309,3 @@ def _at_points(contour: Contour, profile: Any, values: Array) -> Array:
         inside = np.arange(math.ceil(a - 1e-9), math.floor(b + 1e-9) + 1)
         out[inside % n] = np.interp(inside, [a, b], [values[i], values[j]])
     return out
-
-
-def _moved_values(before: Contour, after: Contour, values: Array) -> Array:
-    """Values at the points of one outline at those of another with almost the same shape."""
-    from scipy.spatial import cKDTree
-
-    _, nearest = cKDTree(before.points).query(after.points)
-    return values[nearest]

@@ -23,7 +23,7 @@ from ngwear.run import Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
 from ngwear.scenefile import read_scene
-from ngwear.stepper import StrokeReport
+from ngwear.state import StrokeReport
 from ngwear.verify.base import Check, Stopwatch
 
 CASE = "rod_seal"

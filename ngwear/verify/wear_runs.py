@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,9 +12,12 @@ from ngwear.effects.contact_profile import ContactProfile
 from ngwear.geometry.contour import Contour
 from ngwear.materials import Hyperelastic
 from ngwear.scene import Accuracy, ContactSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
-from ngwear.stepper import State, Stepper
+from ngwear.stepper import Stepper
 from ngwear.surfaces import Cylinder
 from ngwear.verify.builders import rectangle
+
+if TYPE_CHECKING:
+    from ngwear.state import State
 
 CONTACT = "ring"
 

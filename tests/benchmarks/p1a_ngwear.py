@@ -1,6 +1,6 @@
 """Problem P1a with ngwear, one load step, the whole sheet: the subject of ``test_race_p1a.py``.
 
-Triangles of order 2: small under the cylinder, where the pressure ends and along the bonded bottom, large elsewhere.
+Triangles of order 2, small under the cylinder and along the bonded bottom below it, large elsewhere.
 
 Usage: python p1a_ngwear.py
 """
@@ -26,10 +26,10 @@ def main():
     """Solve and print the force [N/mm]."""
     corners = np.array([[-WIDTH / 2, 0.0], [WIDTH / 2, 0.0], [WIDTH / 2, THICKNESS], [-WIDTH / 2, THICKNESS]])
     outline = Contour(corners, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
-    top = [(x, THICKNESS) for x in np.arange(-2.0, 2.01, PATCH)]
-    bottom = [(x, 0.0) for x in np.arange(-2.5, 2.51, BOTTOM)]
+    top = [(x, THICKNESS) for x in np.linspace(-2.0, 2.0, 28)]
+    bottom = [(x, 0.0) for x in np.linspace(-3.5, 3.5, 29)]
     sizes = np.repeat([PATCH, BOTTOM], [len(top), len(bottom)])
-    body = Body(outline, SizeField(np.array(top + bottom), sizes, COARSE))
+    body = Body(outline, SizeField(np.array(top + bottom), sizes, COARSE, grading=0.2))
 
     rubber = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0)
     cylinder = Cylinder(centre=(0.0, THICKNESS + RADIUS), radius=RADIUS)

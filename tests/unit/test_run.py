@@ -249,6 +249,86 @@ def test_resume_of_jumps_over_a_cycle_of_two_strokes(tmp_path, write_sheet, monk
     assert_same_rows(rows_of(tmp_path / "parts"), rows_of(tmp_path / "whole"))
 
 
+RING = """
+[[edge]]
+name = "inside"
+points = [[0, 10], [0.5, 9.95], [1, 9.9], [1.5, 9.95]]
+[[edge]]
+name = "sealed"
+points = [[2, 10], [2, 10.5]]
+[[edge]]
+name = "outside"
+points = [[2, 11], [1, 11]]
+[[edge]]
+name = "back"
+points = [[0, 11], [0, 10.5]]
+"""
+RING_SCENE = """
+[scene]
+name = "ring"
+kind = "axisymmetric"
+[contour]
+file = "ring.toml"
+[material]
+model = "neo-hooke"
+shear = 1.0
+bulk_modulus = 100.0
+[[contact]]
+name = "rod"
+edges = ["inside"]
+surface = { type = "rod", diameter = 20.0 }
+friction = 0.1
+specific_wear_rate = 1e-3
+[[support]]
+edges = ["back"]
+y = false
+[[support]]
+edges = ["outside"]
+x = false
+[fluid]
+edges = ["inside", "sealed"]
+inlet = ["sealed"]
+[program]
+strokes = 6
+[[program.stroke]]
+name = "out"
+travel = 10.0
+direction = -1
+[[program.stroke]]
+name = "in"
+travel = 10.0
+pressure = 0.1
+[accuracy]
+patch = 0.05
+coarse = 0.3
+mounting = 0.1
+"""
+
+
+def test_state_saved_under_fluid_pressure_goes_on_the_same(tmp_path):
+    """Axisymmetric, friction, wear and a fluid front: all of it is in the checkpoint."""
+    (tmp_path / "ring.toml").write_text(RING)
+    (tmp_path / "scene.toml").write_text(RING_SCENE)
+    scene = read_scene(tmp_path / "scene.toml")
+    stepper = Stepper(scene)
+    state = stepper.advance(stepper.start())
+    assert 0 < state.strokes < scene.program.strokes
+    ends = []
+    for going_on in (pickle.loads(pickle.dumps(state)), state):
+        while not stepper.finished(going_on):
+            going_on = stepper.advance(going_on)
+        ends.append((going_on.ledger, going_on.work, going_on.reports[-1].forces))
+    (resumed, work, forces), (whole, work_whole, forces_whole) = ends
+    assert whole.worn > 0
+    assert resumed.worn == pytest.approx(whole.worn, rel=1e-9)
+    assert resumed.removed == pytest.approx(whole.removed, rel=1e-9)
+    assert resumed.area_error == pytest.approx(whole.area_error, rel=1e-9)
+    assert work == work_whole
+    assert forces["fluid"][0] < -6.0, "0.1 MPa on a ring face of 1 mm by 2 pi 10.5 mm"
+    for name, force in forces_whole.items():
+        assert forces[name] == pytest.approx(force, rel=1e-7, abs=1e-9), name
+
+
 def test_strokes_to_be_kept_are_not_passed_over(tmp_path, write_sheet):
     file = jumping(tmp_path, write_sheet)
     file.write_text(file.read_text() + "[save]\nstrokes = [6]\n")

@@ -1,0 +1,60 @@
+"""A new mesh for the present outline, fine where the contact is, with all states carried over."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.carry import carry
+from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.recession import tidied
+from ngwear.stage import Stage
+from ngwear.state import State
+
+Array = NDArray[np.float64]
+
+SHORTEST = 0.4  # of its length when meshed: how short a segment may become before the outline is tidied
+FARTHEST = 1.0  # of the patch's edge: how far the outline may move on one mesh
+
+
+def is_due(state: State) -> bool:
+    """Whether the contact has outgrown the patch, or the outline has moved or shrunk too far for its mesh."""
+    body, accuracy = state.stage.body, state.stage.scene.accuracy
+    moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
+    if moved > FARTHEST * accuracy.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
+        return True
+    return state.stage.outgrown([p.vector for p in state.phases])
+
+
+def remesh(state: State, contour: Contour | None = None) -> None:
+    """Mesh the present (or the given) outline anew and carry the state over, in place.
+
+    The carried vectors are first guesses, not equilibria. Raises MeshError if the mesh fails its gates; the
+    state is then as it was.
+    """
+    old = state.stage
+    contour = old.body.contour if contour is None else contour
+    wanted = old.wanted_size([p.vector for p in state.phases])
+    tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
+    body = Body(tidy, wanted)
+    stage = Stage(old.scene, body)
+    vectors = carry(old.problem, [p.vector for p in state.phases], stage.problem)
+    before, after = old.body.contour, body.contour
+    for phase, vector in zip(state.phases, vectors, strict=True):
+        phase.vector, phase.rate = vector, None
+        if phase.pressure is not None:
+            phase.pressure = _moved_values(before, after, phase.pressure)
+    if state.depth_error is not None:
+        state.depth_error = _moved_values(before, after, state.depth_error)
+    state.ledger.remesh_jump = max(state.ledger.remesh_jump, abs(after.area - contour.area) / contour.area)
+    state.ledger.remeshes += 1
+    state.stage = stage
+
+
+def _moved_values(before: Contour, after: Contour, values: Array) -> Array:
+    """Values at the points of one outline at those of another with almost the same shape."""
+    from scipy.spatial import cKDTree
+
+    _, nearest = cKDTree(before.points).query(after.points)
+    return values[nearest]

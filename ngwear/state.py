@@ -1,0 +1,125 @@
+"""The accepted state of a run: one equilibrium for each stroke of the cycle, and the book of worn material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.equilibrium.stepping import Work
+from ngwear.geometry.contour import Contour
+from ngwear.stage import Stage
+from ngwear.wear.control import JumpControl
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Phase:
+    """What is kept of one stroke of the cycle, for the same stroke of the next one.
+
+    Attributes
+    ----------
+    vector : array
+        Equilibrium of the last time.
+    rate : array or None
+        Its change per cycle, on the same mesh.
+    pressure : array, shape (n,)
+        Nominal pressure of all wearing contacts at the contour points [MPa], of the last time.
+    """
+
+    vector: Array
+    rate: Array | None = None
+    pressure: Array | None = None
+
+
+@dataclass
+class Ledger:
+    """Book of worn material and of the errors made.
+
+    Attributes
+    ----------
+    worn : float
+        int W dA by the law, as section area [mm²].
+    removed : float
+        Area taken off the outline's polygon [mm²].
+    area_error : float
+        Sum of the steps' embedded errors of worn area [mm²].
+    depth_error : float
+        Largest sum of the embedded errors of depth at one point of the outline [mm].
+    remesh_jump : float
+        Largest relative change of the section's area in a remesh [-].
+    """
+
+    worn: float = 0.0
+    removed: float = 0.0
+    area_error: float = 0.0
+    depth_error: float = 0.0
+    remesh_jump: float = 0.0
+    remeshes: int = 0
+
+
+@dataclass
+class State:
+    """An accepted state of a run; ``Stepper.advance`` turns one into the next."""
+
+    stage: Stage
+    phases: list[Phase]
+    control: JumpControl
+    strokes: int = 0
+    ledger: Ledger = field(default_factory=Ledger)
+    work: Work = field(default_factory=Work)
+    depth_error: Array | None = None
+    reports: list[StrokeReport] = field(default_factory=list)
+
+    def __getstate__(self) -> dict[str, Any]:
+        saved = dict(self.__dict__)
+        saved["stage"] = (self.stage.scene, self.stage.body)
+        return saved
+
+    def __setstate__(self, saved: dict[str, Any]) -> None:
+        self.__dict__.update(saved)
+        self.stage = Stage(*saved["stage"])
+
+    @property
+    def contour(self) -> Contour:
+        """The outline as it is now."""
+        return self.stage.body.contour
+
+
+@dataclass(frozen=True)
+class StrokeReport:
+    """One solved stroke: its equilibrium, and the outline after its wear.
+
+    Attributes
+    ----------
+    phase : int
+        Which stroke of the cycle.
+    last_stroke, repeats : int
+        Number of the last stroke that this solve stands for, and how many of its kind it stands for.
+    iterations : int
+        Newton iterations.
+    contacts : dict of str to ContactProfile
+        The followed contacts at equilibrium.
+    forces : dict of str to array, shape (2,)
+        Resultants on the part [N, or N/mm].
+    leaks : bool
+        Whether the fluid meets no contact.
+    contour : Contour
+        Outline after the stroke's wear.
+    ledger : Ledger
+        Book after the stroke's wear.
+    """
+
+    phase: int
+    last_stroke: int
+    repeats: int
+    iterations: int
+    contacts: dict[str, ContactProfile]
+    forces: dict[str, Array]
+    leaks: bool
+    contour: Contour
+    ledger: Ledger
