@@ -83,7 +83,7 @@ def read_result(folder: Path | str) -> ResultFile:
                 lambda name, item: series.__setitem__(name, _column(item)) if isinstance(item, h5py.Dataset) else None
             )
             return ResultFile(str(h5.attrs["scene"]), h5["outline/points [mm]"][()], series, snapshots)
-    except (OSError, KeyError, ValueError) as error:
+    except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
         raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
 
 
@@ -111,7 +111,10 @@ def plot(folder: Path | str) -> list[Path]:
         {"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "figure.constrained_layout.use": True}
     ):
         for name, draw in figures.items():
-            figure = draw(result)
+            try:
+                figure = draw(result)
+            except KeyError as error:
+                raise ResultError(f"{Path(folder) / 'result.h5'} lacks {error}: the file is damaged") from error
             path = Path(folder) / f"{name}.png"
             try:
                 figure.savefig(path, dpi=150)

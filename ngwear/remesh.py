@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.equilibrium.carry import carry
+from ngwear.errors import MeshError
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import tidied
@@ -15,6 +16,7 @@ from ngwear.state import State
 Array = NDArray[np.float64]
 
 SHORTEST = 0.4  # of its length when meshed: how short a segment may become before the outline is tidied
+LARGEST_JUMP = 1e-6  # of the section's area
 FARTHEST = 1.0  # of the patch's edge: how far the outline may move on one mesh
 
 
@@ -37,7 +39,10 @@ def remesh(state: State, contour: Contour | None = None) -> None:
     contour = old.body.contour if contour is None else contour
     wanted = old.wanted_size([p.vector for p in state.phases])
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
-    body = Body(tidy, wanted)
+    body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
+    jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
+    if jump > LARGEST_JUMP:
+        raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
     stage = Stage(old.scene, body)
     vectors = carry(old.problem, [p.vector for p in state.phases], stage.problem)
     before, after = old.body.contour, body.contour
@@ -47,7 +52,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
             phase.pressure = _moved_values(before, after, phase.pressure)
     if state.depth_error is not None:
         state.depth_error = _moved_values(before, after, state.depth_error)
-    state.ledger.remesh_jump = max(state.ledger.remesh_jump, abs(after.area - contour.area) / contour.area)
+    state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
     state.ledger.remeshes += 1
     state.stage = stage
 

@@ -244,7 +244,12 @@ class Folder:
         self._replace(SERIES, lambda file: file.write(_csv(recorder.rows)))
 
     def finish(self, recorder: Recorder, summary: dict[str, Any]) -> None:
-        """Write the summary and the fields."""
+        """Write the summary, the series and the fields; clear away what a kill has left half-written."""
+        for left in self.path.glob(".*.*"):
+            if left.name.startswith(tuple(f".{name}." for name in (SERIES, FIELDS, SUMMARY, CHECKPOINT))):
+                left.unlink(missing_ok=True)
+        if recorder.rows:
+            self._replace(SERIES, lambda file: file.write(_csv(recorder.rows)))
         self._replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
         self._replace(FIELDS, lambda file: _hdf5(file, recorder, summary))
 

@@ -104,9 +104,12 @@ def run(
             error = failure
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
-    strokes = 0 if state is None else state.strokes
-    message = "all strokes done" if error is None else f"after stroke {strokes}: {error}"
-    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0}
+    message = "all strokes done"
+    if error is not None:
+        where = "the part cannot be mounted" if state is None else f"after stroke {state.strokes}"
+        message = f"{where}: {error}"
+    times = {"wall time [s]": round(recorder.wall, 3), "CPU time [s]": round(recorder.cpu, 3)}
+    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
     if folder is not None:

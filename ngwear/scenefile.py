@@ -35,6 +35,7 @@ _SURFACES: dict[str, tuple[Callable[..., RigidSurface], set[str]]] = {
     "cylinder": (Cylinder, {"centre", "radius", "push"}),
 }
 _SURFACE_OPTIONAL = {"push"}
+_PAIRS = {"point", "normal", "centre", "push"}
 
 
 def read_scene(path: Path | str) -> Scene:
@@ -59,7 +60,7 @@ def read_scene(path: Path | str) -> Scene:
     head = _table(data, "scene")
     _known("scene.", head, {"name", "kind"})
     kind = _get(head, "scene", "kind")
-    if kind not in KINDS:
+    if not isinstance(kind, str) or kind not in KINDS:
         raise SceneError("scene.kind", kind, f"must be one of {list(KINDS)}")
     outline = _table(data, "contour")
     _known("contour.", outline, {"file"})
@@ -80,7 +81,7 @@ def read_scene(path: Path | str) -> Scene:
 
 def _material(table: dict[str, Any]) -> Hyperelastic:
     model = _get(table, "material", "model")
-    if model not in _MATERIALS:
+    if not isinstance(model, str) or model not in _MATERIALS:
         raise SceneError("material.model", model, f"must be one of {list(_MATERIALS)}")
     values = {key: value for key, value in table.items() if key not in ("model", "source")}
     return _dataclass(_MATERIALS[model], "material", values)
@@ -88,28 +89,33 @@ def _material(table: dict[str, Any]) -> Hyperelastic:
 
 def _contact(number: int, table: dict[str, Any]) -> ContactSpec:
     place = f"contact[{number}]"
+    if not isinstance(table, dict):
+        raise SceneError(place, table, "must be a table")
     values = dict(table)
-    surface = dict(_get(values, place, "surface"))
+    surface = _get(values, place, "surface")
+    if not isinstance(surface, dict):
+        raise SceneError(f"{place}.surface", surface, 'must be a table, such as { type = "rod", diameter = 22.2 }')
+    surface = dict(surface)
     values["surface"] = _surface(f"{place}.surface", surface)
     return _dataclass(ContactSpec, place, values)
 
 
 def _surface(place: str, table: dict[str, Any]) -> RigidSurface:
     kind = table.pop("type", None)
-    if kind not in _SURFACES:
+    if not isinstance(kind, str) or kind not in _SURFACES:
         raise SceneError(f"{place}.type", kind, f"must be one of {list(_SURFACES)}")
     build, keys = _SURFACES[kind]
     _known(f"{place}.", table, keys)
     for key in sorted(keys - _SURFACE_OPTIONAL - set(table)):
         _get(table, place, key)
-    return build(**{key: _checked(f"{place}.{key}", value) for key, value in table.items()})
+    return build(**{key: _checked(f"{place}.{key}", value, pair=key in _PAIRS) for key, value in table.items()})
 
 
 def _program(table: dict[str, Any]) -> Program:
     _known("program.", table, {"strokes", "stroke"})
     strokes = _get(table, "program", "strokes")
     cycle = tuple(_dataclass(Stroke, f"program.stroke[{i}]", t) for i, t in enumerate(_list(table, "stroke")))
-    if not isinstance(strokes, int):
+    if isinstance(strokes, bool) or not isinstance(strokes, int):
         raise SceneError("program.strokes", strokes, "must be a whole number")
     return Program(strokes=strokes, cycle=cycle)
 
@@ -129,7 +135,7 @@ def _dataclass(cls: Any, place: str, table: Any) -> Any:
 def _typed(place: str, value: Any, kind: str) -> Any:
     """Check a TOML value against the annotation of the field that takes it."""
     if kind.startswith("tuple[str"):
-        if isinstance(value, str) or not all(isinstance(v, str) for v in value):
+        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
             raise SceneError(place, value, 'must be a list of names, such as ["lip"]')
         return tuple(value)
     if kind.startswith("tuple[int"):
@@ -145,15 +151,17 @@ def _typed(place: str, value: Any, kind: str) -> Any:
     if kind.startswith("float"):
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise SceneError(place, value, "must be a number")
+        if not abs(value) < 1e15:
+            raise SceneError(place, value, "must be a finite number (below 1e15)")
         return float(value)
     return value
 
 
-def _checked(place: str, value: Any) -> Any:
-    if isinstance(value, list):
-        if len(value) != 2 or not all(isinstance(v, int | float) for v in value):
+def _checked(place: str, value: Any, *, pair: bool) -> Any:
+    if pair:
+        if not isinstance(value, list) or len(value) != 2:
             raise SceneError(place, value, "must be two numbers [x, y]")
-        return (float(value[0]), float(value[1]))
+        return tuple(_typed(place, v, "float") for v in value)
     return _typed(place, value, "float")
 
 

@@ -105,8 +105,7 @@ class Stage:
                 loads |= dict.fromkeys(contact.loads, -overlap)
             else:
                 loads |= dict.fromkeys(contact.loads, 0.0)
-                start = self.problem.fields[contact.travel_name]
-                start.vec[:] = -self._clearance(spec)[0]
+                self.problem.fields[contact.travel_name].vec[:] = self._travel_to_touch(spec)
         for friction in self.frictions.values():
             loads |= dict.fromkeys(friction.loads, self.scene.program.cycle[0].direction)
         return loads
@@ -119,6 +118,27 @@ class Stage:
         gap = np.array([float(spec.surface.gap(x, y)) for x, y in contour.points[touching]])
         worst = int(np.argmin(gap))
         return float(gap[worst]), int(np.flatnonzero(touching)[worst])
+
+    def _travel_to_touch(self, spec: ContactSpec) -> float:
+        """Travel along the approach at which a surface under force bites a little and so meets a stiffness [mm]."""
+        ax, ay = spec.surface.approach
+        contour = self.body.contour
+        mine = contour.on(spec.edges)
+        points = contour.points[mine | np.roll(mine, 1)]
+        bite = 0.1 * self.scene.accuracy.mounting
+
+        def smallest(travel: float) -> float:
+            return min(float(spec.surface.gap(x - travel * ax, y - travel * ay)) for x, y in points)
+
+        travel, reach = 0.0, 10.0 * float(np.ptp(contour.points, axis=0).max())
+        for _ in range(500):  # the gap is a distance: so far the surface can go without passing the place
+            off = smallest(travel) + bite
+            travel += off
+            if abs(off) < 1e-3 * bite:
+                return travel
+            if abs(travel) > reach:
+                break
+        raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "does not meet its edges along its approach")
 
     def _overlap(self, spec: ContactSpec) -> float:
         """How far the surface has to be drawn back along its approach to free the part [mm]."""

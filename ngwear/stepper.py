@@ -17,6 +17,7 @@ from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
+from ngwear.geometry.sizing import smoothed
 from ngwear.remesh import is_due, remesh
 from ngwear.scene import Scene
 from ngwear.stage import Stage, mounting_field
@@ -68,7 +69,8 @@ class Stepper:
             If the part cannot be mounted.
         """
         scene = self.scene
-        stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
+        contour = smoothed(scene.contour, self.worn_edges, 1.3 * scene.accuracy.patch)
+        stage = Stage(scene, Body(contour, mounting_field(scene)))
         control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
         state = State(stage, [], control)
         problem = stage.problem

@@ -8,6 +8,7 @@ Nothing here is measured. Section about 5 x 4 mm; the lip tip at radius 10.2 (bo
 
 from __future__ import annotations
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +64,7 @@ def rounded(vertices: list[tuple[float, float, float]], spacing: float) -> np.nd
     dense.append(np.array(vertices[-1][:2]))
     dense = np.array(dense)
     fine = [dense[:1]]
-    for a, b in zip(dense[:-1], dense[1:], strict=True):
+    for a, b in pairwise(dense):
         n = max(1, int(np.linalg.norm(b - a) / 0.001))
         fine.append(a + (b - a) * np.arange(1, n + 1)[:, None] / n)
     return resample(np.vstack(fine), spacing)
@@ -112,7 +113,7 @@ def main() -> None:
     corner = {"heel", "back face", "sealed shoulder", "sealed round", "static face", "air round"}
     lines = [
         'title = "Invented rod seal, section 5 x 4 mm, bore 20.4 mm"',
-        'provenance = "invented for ngwear after the description in 10.5772/50498; not measured; made by make_contour.py"',
+        'provenance = "invented after the description in 10.5772/50498; not measured; made by make_contour.py"',
         'coordinates = ["axial [mm]", "radius [mm]"]',
     ]
     for name, points in edges():

@@ -65,6 +65,7 @@ class Contact(Term):
         self.floor = 1e-7 / modulus
         self.compliance = ng.Parameter(0.0)
         self.load = ng.Parameter(0.0)
+        self._length = ng.Parameter(1.0)  # of the whole outline as it is meshed and worn [mm]
         kind = "force [N]" if force_controlled else "approach [mm]"
         self.loads = {f"{name} {kind}": self.load}
 
@@ -114,11 +115,11 @@ class Contact(Term):
             # A constant energy density over the outline adds up to - force * travel.
             everywhere = unknowns.body.mesh.Boundaries(".*")
             travel = unknowns.trial[self.travel_name]
-            length = float(unknowns.body.contour.lengths.sum())
-            form += ng.Variation(-self.load * travel / length * ng.ds(definedon=everywhere))
+            form += ng.Variation(-self.load * travel / self._length * ng.ds(definedon=everywhere))
 
         self._state, self._kinematics = unknowns.state, kinematics
         self._lay_samples(unknowns.body, region)
+        self._measure()
 
     def _lay_samples(self, body: Body, region: ng.Region) -> None:
         """Mapped points at both ends of each mesh edge in contact, in the order of the outline."""
@@ -194,3 +195,10 @@ class Contact(Term):
 
     def prepare(self) -> None:
         self._start.vec.data = self._state[DISPLACEMENT].vec
+        self._measure()
+
+    def _measure(self) -> None:
+        """Length of the outline as the mesh has it now, curved and worn."""
+        if self.force_controlled:
+            everywhere = self._body.mesh.Boundaries(".*")
+            self._length.Set(ng.Integrate(ng.CF(1.0) * ng.ds(definedon=everywhere), self._body.mesh))

@@ -39,6 +39,8 @@ class NewtonOptions:
     tolerance : float
         Largest accepted last displacement correction over the section's size [-]. Newton converges
         quadratically: the error left is far smaller.
+    pressure_tolerance : float
+        Largest accepted last correction of a contact's nominal pressure over its maximum [-].
     max_iterations : int
     first_augmentation : float or None
         Contact augmentation c [MPa/mm] of the first iteration; large: trust the gap, not the pressure,
@@ -46,6 +48,7 @@ class NewtonOptions:
     """
 
     tolerance: float = 1e-7
+    pressure_tolerance: float = 1e-3
     max_iterations: int = 25
     first_augmentation: float | None = None
 
@@ -92,6 +95,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     contacts = [term for term in problem.terms if isinstance(term, Contact)]
     size = float(np.ptp(problem.body.contour.points, axis=0).max())
     u = problem.part(DISPLACEMENT)
+    pressures = [problem.part(contact.pressure_name) for contact in contacts]
     vector = problem.state.vec
     residual, correction, trial = (vector.CreateVector() for _ in range(3))
     report = Report(Outcome.TOO_MANY_ITERATIONS)
@@ -127,7 +131,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
             break
         change = step * float(np.abs(correction.FV().NumPy()[u]).max())
         report.corrections.append(change)
-        if step == 1.0 and change <= options.tolerance * size:
+        if step == 1.0 and change <= options.tolerance * size and _settled(vector, correction, pressures, options):
             report.outcome = Outcome.CONVERGED
             break
         if _stalled(report.corrections):
@@ -136,6 +140,12 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     for contact in contacts:
         contact.augmentation.Set(contact.default_augmentation)
     return report
+
+
+def _settled(vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice], options: NewtonOptions) -> bool:
+    """Whether the last correction left the contact pressures alone: on a stiff body they follow the displacement."""
+    values, change = vector.FV().NumPy(), correction.FV().NumPy()
+    return all(np.abs(change[p]).max() <= options.pressure_tolerance * np.abs(values[p]).max() for p in parts)
 
 
 def _stalled(corrections: list[float]) -> bool:

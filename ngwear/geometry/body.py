@@ -55,6 +55,8 @@ class Body:
     contour : Contour
     field : SizeField
         Wanted element edges.
+    on_chord : bool
+        Add points to the outline, where the field asks for them, without changing the polygon's area.
 
     Raises
     ------
@@ -62,9 +64,9 @@ class Body:
         If the new mesh does not pass its gates.
     """
 
-    def __init__(self, contour: Contour, field: SizeField) -> None:
+    def __init__(self, contour: Contour, field: SizeField, *, on_chord: bool = False) -> None:
         self.field = field
-        self.base = self.contour = fitted(contour, field)
+        self.base = self.contour = fitted(contour, field, on_chord=on_chord)
         self.mesh = section.mesh(self.base, mesh_nodes(self.base, field), field)
         self._set_up()
 

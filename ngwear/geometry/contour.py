@@ -167,6 +167,12 @@ class Contour:
         r = 1 - s
         return r**3 * b[:, 0] + 3 * r * r * s * b[:, 1] + 3 * r * s * s * b[:, 2] + s**3 * b[:, 3]
 
+    def on_polygon(self, t: Array) -> Array:
+        """Points of the polygon at contour parameters t; shape (len(t), 2)."""
+        low = np.floor(t).astype(int)
+        s = (t - low)[:, None]
+        return (1 - s) * self.points[low % len(self)] + s * self.points[(low + 1) % len(self)]
+
     def slopes(self, t: Any) -> Array:
         """Derivative of the outline with respect to t; shape (len(t), 2)."""
         t = np.atleast_1d(np.asarray(t, dtype=float))
@@ -191,8 +197,11 @@ class Contour:
         """Return the outline with its points displaced, shape (n, 2); names and corners stay."""
         return replace(self, points=self.points + displacement)
 
-    def inserted(self, t: Array) -> Contour:
-        """Return the outline with points added on the spline at the (non-integer) parameters t."""
+    def inserted(self, t: Array, *, on_chord: bool = False) -> Contour:
+        """Return the outline with points added at the (non-integer) parameters t.
+
+        They lie on the spline, or on the polygon (``on_chord``), whose area then stays exactly the same.
+        """
         t = np.unique(np.asarray(t, dtype=float) % len(self))
         t = t[t != np.floor(t)]
         if len(t) == 0:
@@ -201,7 +210,7 @@ class Contour:
         segment = at - 1
         return replace(
             self,
-            points=np.insert(self.points, at, self.at(t), axis=0),
+            points=np.insert(self.points, at, self.on_polygon(t) if on_chord else self.at(t), axis=0),
             names=tuple(np.insert(np.array(self.names, dtype=object), at, np.array(self.names, dtype=object)[segment])),
             corners=np.insert(self.corners, at, False),
         )

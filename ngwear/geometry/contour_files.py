@@ -61,7 +61,7 @@ def _toml(path: Path) -> Contour:
 
 def _csv(path: Path) -> Contour:
     """Columns ``x [mm], y [mm], edge`` and optionally ``corner`` (0 or 1), one row a point, counter-clockwise."""
-    with path.open(newline="", encoding="utf-8") as file:
+    with path.open(newline="", encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
     columns = set(rows[0]) if rows else set()
     missing = {"x [mm]", "y [mm]", "edge"} - columns
@@ -70,7 +70,7 @@ def _csv(path: Path) -> Contour:
             f"columns {sorted(missing)} are missing; expected 'x [mm]', 'y [mm]', 'edge' and perhaps 'corner'"
         )
     points = np.array([[float(row["x [mm]"]), float(row["y [mm]"])] for row in rows])
-    names = tuple(row["edge"].strip() for row in rows)
+    names = tuple((row["edge"] or "").strip() for row in rows)
     marked = "corner" in columns
     corners = np.array([bool(int(row["corner"])) for row in rows]) if marked else _sharp(points)
     return Contour(points, names, corners, path.name)
@@ -86,7 +86,10 @@ def _step(path: Path) -> Contour:
     """The first face of the file, in its x-y plane; edges keep their names or are called ``edge 1`` and so on."""
     import netgen.occ as occ
 
-    shape = occ.OCCGeometry(str(path)).shape
+    try:
+        shape = occ.OCCGeometry(str(path)).shape
+    except Exception as error:  # netgen's own class derives from Exception alone
+        raise GeometryError(f"cannot be read as STEP: {error}") from error
     faces = list(shape.faces)
     if len(faces) != 1:
         raise GeometryError(f"holds {len(faces)} faces; export one plane section")
@@ -136,4 +139,5 @@ def _joined(pieces: list[tuple[str, np.ndarray]], provenance: str) -> Contour:
     if x @ np.roll(y, -1) - y @ np.roll(x, -1) < 0:
         points = np.roll(points[::-1], 1, axis=0)
         names = names[::-1]
-    return Contour(points, tuple(names), _sharp(points), provenance)
+    starts = np.array([any(np.allclose(p, end) for _, own in chain for end in (own[0], own[-1])) for p in points])
+    return Contour(points, tuple(names), starts, provenance)

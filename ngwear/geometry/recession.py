@@ -117,7 +117,22 @@ def healed(before: Contour, after: Array) -> Contour:
     if not pieces or pieces[-1].area < 0.9 * whole.area:
         place = before.points[moved].mean(axis=0).round(4).tolist()
         raise GeometryError(f"the section is worn through near {place}")
-    return _renamed(before, after, np.array(pieces[-1].exterior.coords)[:-1])
+    ring = pieces[-1].exterior
+    return _renamed(before, after, _with_points(np.array(ring.coords)[:-1], after))
+
+
+def _with_points(ring: Array, points: Array) -> Array:
+    """Put the outline's own points back on a ring's straight segments: shapely merges what lies in line."""
+    ahead = np.roll(ring, -1, axis=0) - ring
+    length = np.linalg.norm(ahead, axis=1)
+    out = []
+    for start, step, size in zip(ring, ahead, length, strict=True):
+        out.append(start[None])
+        along = (points - start) @ step / size
+        off = np.abs(_cross(points - start, np.broadcast_to(step, points.shape))) / size
+        mine = (off < 1e-9) & (along > 1e-6) & (along < size - 1e-6)
+        out.append(points[mine][np.argsort(along[mine])])
+    return np.vstack(out)
 
 
 def _renamed(before: Contour, after: Array, points: Array) -> Contour:
@@ -149,7 +164,11 @@ def tidied(contour: Contour, field: SizeField) -> Contour:
         short = (contour.lengths < 0.4 * np.minimum(h, np.median(contour.lengths))) & ~fixed & ~np.roll(fixed, -1)
         pick = _apart(np.flatnonzero(short), len(contour))
         if len(pick) == 0:
-            return contour
+            spare = _beside_fixed(contour, fixed, h)
+            if not spare.any():
+                return contour
+            contour = contour.without(spare)
+            continue
         points, n = contour.points.copy(), len(contour)
         drop: NDArray[np.bool_] = np.zeros(n, dtype=bool)
         for i in pick:
@@ -160,6 +179,17 @@ def tidied(contour: Contour, field: SizeField) -> Contour:
             points[i] = middle + outward * (2 * lost / np.linalg.norm(chord))
             drop[(i + 1) % n] = True
         contour = replace(contour, points=points).without(drop)
+
+
+def _beside_fixed(contour: Contour, fixed: NDArray[np.bool_], h: Array) -> NDArray[np.bool_]:
+    """Points so close to a fixed one that they can go, on a straight piece: a worn corner that slides uses them up."""
+    short = contour.lengths < 0.4 * np.minimum(h, np.median(contour.lengths))
+    chord = np.roll(contour.points, -1, axis=0) - np.roll(contour.points, 1, axis=0)
+    off = np.abs(_cross(contour.points - np.roll(contour.points, 1, axis=0), chord))  # twice the area that goes
+    straight = off < 1e-9 * (chord**2).sum(axis=1)
+    near = (short & np.roll(fixed, -1)) | (np.roll(short, 1) & np.roll(fixed, 1))
+    spare = near & ~fixed & straight
+    return spare & ~np.roll(spare, 1)
 
 
 def _apart(index: NDArray[np.intp], n: int) -> list[int]:

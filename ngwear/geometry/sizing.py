@@ -41,10 +41,10 @@ class SizeField:
         return h
 
 
-def fitted(contour: Contour, field: SizeField) -> Contour:
+def fitted(contour: Contour, field: SizeField, *, on_chord: bool = False) -> Contour:
     """Return the outline with points inserted until no segment is longer than 1.3 h.
 
-    Segments are halved on the spline; a straight one keeps the polygon's area exactly.
+    Segments are halved on the spline, or on the polygon (``on_chord``), whose area then stays exactly the same.
     """
     while True:
         middle = np.arange(len(contour)) + 0.5
@@ -53,7 +53,22 @@ def fitted(contour: Contour, field: SizeField) -> Contour:
         long = contour.lengths > 1.3 * h
         if not long.any():
             return contour
-        contour = contour.inserted(middle[long])
+        contour = contour.inserted(middle[long], on_chord=on_chord)
+
+
+def smoothed(contour: Contour, edges: tuple[str, ...], longest: float) -> Contour:
+    """Return the outline with points inserted on the spline where the named edges are curved.
+
+    After that no curved segment there is longer than ``longest`` [mm]: what wears must not be refined later,
+    because a point put on the spline of a curved segment changes the polygon's area.
+    """
+    while True:
+        middle = np.arange(len(contour)) + 0.5
+        sagitta = np.linalg.norm(contour.at(middle) - contour.on_polygon(middle), axis=1)
+        split = contour.on(edges) & (contour.lengths > longest) & (sagitta > 1e-6 * contour.lengths)
+        if not split.any():
+            return contour
+        contour = contour.inserted(middle[split])
 
 
 def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
@@ -67,7 +82,8 @@ def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
     turn, length = np.abs(contour.turning), contour.lengths
     fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(n)])
     start = int(np.argmax(fixed))
-    max_turn = np.where(h <= 1.01 * np.min(field.sizes, initial=field.coarse), 0.26, 0.5)
+    in_patch = h <= 1.01 * field.sizes.min() if len(field.sizes) else np.zeros(n, dtype=bool)
+    max_turn = np.where(in_patch, 0.26, 0.5)
     chosen = [start]
     run_length = run_turn = 0.0
     for step in range(1, n):

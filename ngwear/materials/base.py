@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -67,5 +68,5 @@ class Hyperelastic(abc.ABC):
 
     def _require_positive(self, **values: float) -> None:
         for name, value in values.items():
-            if not value > 0:
-                raise SceneError(f"material.{name}", value, "a modulus must be greater than 0 MPa")
+            if not 0 < value < math.inf:
+                raise SceneError(f"material.{name}", value, "a modulus must be finite and greater than 0 MPa")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,7 +37,7 @@ class MooneyRivlin(Hyperelastic):
 
     def __post_init__(self) -> None:
         self._require_positive(c10=self.c10, bulk_modulus=self.bulk_modulus)
-        if self.c01 < 0:
+        if not 0 <= self.c01 < math.inf:
             raise SceneError("material.c01", self.c01, "must be at least 0 MPa; for C01 = 0 use neo-hooke")
 
     @property

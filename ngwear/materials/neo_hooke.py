@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ngwear.errors import SceneError
 from ngwear.materials.base import Hyperelastic
 
 
@@ -36,6 +37,8 @@ class NeoHooke(Hyperelastic):
     @classmethod
     def from_young(cls, young: float, poisson: float) -> NeoHooke:
         """Return the model with Young's modulus ``young`` [MPa] and ratio ``poisson`` < 0.5."""
+        if not -1 < poisson < 0.5:
+            raise SceneError("material.poisson", poisson, "must lie between -1 and 0.5")
         return cls(shear=young / (2 * (1 + poisson)), bulk_modulus=young / (3 * (1 - 2 * poisson)))
 
     @property

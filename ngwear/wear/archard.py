@@ -33,7 +33,22 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
     """
     n = len(contour)
     share = np.zeros(n)
-    depth = np.divide(amount, profile.weight)
+    point = np.rint(profile.t).astype(int)
+    whole = (np.abs(profile.t - point) < 1e-9)[profile.edges].all(axis=1)
+    whole &= (np.diff(point[profile.edges], axis=1) % n == 1).ravel()
+    # Where mesh edges are the outline's segments, nodes are its points: sharing out again would only smooth.
+    direct = np.ones(len(profile.t), dtype=bool)
+    direct[profile.edges[~whole]] = False
+    np.add.at(share, point[direct] % n, amount[direct])
+    rest = np.where(direct, 0.0, amount)
+    return share + _shared_out(contour, profile, rest) if rest.any() else share
+
+
+def _shared_out(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
+    """Share nodal amounts as the integrals of a depth linear between the mesh nodes; the sum is kept."""
+    n = len(contour)
+    share = np.zeros(n)
+    depth = amount / profile.weight
     for i, j in profile.edges:
         if depth[i] == 0 and depth[j] == 0:
             continue
@@ -49,8 +64,7 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
         for point in (segment, segment + 1):
             ends, inner = _hat(np.stack([cuts[:-1], cuts[1:]]), point), _hat(0.5 * (cuts[:-1] + cuts[1:]), point)
             np.add.at(share, point % n, length / 6 * (w[:-1] * ends[0] + 4 * middle * inner + w[1:] * ends[1]))
-    total = share.sum()
-    return share * (amount.sum() / total) if total > 0 else share
+    return share * (amount.sum() / share.sum())
 
 
 def _hat(t: Array, point: NDArray[np.intp]) -> Array:
