@@ -27,6 +27,7 @@ class Outcome(enum.Enum):
 
 
 HALVINGS = 7  # of a correction that would fold an element
+NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept once
 PATIENCE = 8  # iterations within which the smallest correction must halve
 
 
@@ -40,7 +41,7 @@ class NewtonOptions:
         Largest accepted last displacement correction over the section's size [-]. Newton converges
         quadratically: the error left is far smaller.
     pressure_tolerance : float
-        Largest accepted last correction of a contact's nominal pressure over its maximum [-].
+        Largest accepted last correction of a nominal contact pressure over the highest one [-].
     max_iterations : int
     first_augmentation : float or None
         Contact augmentation c [MPa/mm] of the first iteration; large: trust the gap, not the pressure,
@@ -107,7 +108,8 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         report.outcome = Outcome.BAD_START
         return report
     for report.iterations in range(1, options.max_iterations + 1):
-        solver = problem.tangent()
+        if not _nearly_there(report.corrections, options.tolerance * size):
+            solver = problem.tangent()
         if solver is None:
             report.outcome = Outcome.SINGULAR
             break
@@ -145,7 +147,19 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
 def _settled(vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice], options: NewtonOptions) -> bool:
     """Whether the last correction left the contact pressures alone: on a stiff body they follow the displacement."""
     values, change = vector.FV().NumPy(), correction.FV().NumPy()
-    return all(np.abs(change[p]).max() <= options.pressure_tolerance * np.abs(values[p]).max() for p in parts)
+    highest = max((np.abs(values[p]).max() for p in parts), default=0.0)
+    moved = max((np.abs(change[p]).max() for p in parts), default=0.0)
+    return bool(moved <= options.pressure_tolerance * highest or highest == 0.0)
+
+
+def _nearly_there(corrections: list[float], goal: float) -> bool:
+    """Whether the last correction is the first so small that the next one is likely to be the last.
+
+    The next one is then taken with the tangent at hand: it differs from Newton's own by about the last correction
+    over the section's size. If it is not the last (the contact has changed), the tangent is new again.
+    """
+    mark = NEARLY * goal
+    return len(corrections) > 1 and goal < corrections[-1] <= mark < corrections[-2]
 
 
 def _stalled(corrections: list[float]) -> bool:

@@ -32,11 +32,11 @@ class Kinematics(abc.ABC):
 
         ``hoop`` stands for the hoop stretch if it is given, to differentiate by it.
         """
-        plane = ng.Id(2) + grad_u
         hoop = self.hoop_stretch(u) if hoop is None else hoop
-        c = plane.trans * plane
-        trace, det = ng.Trace(c), ng.Det(c)
-        return trace + hoop * hoop, det + hoop * hoop * trace, ng.Det(plane) * hoop
+        xx, xy, yx, yy = 1 + grad_u[0, 0], grad_u[0, 1], grad_u[1, 0], 1 + grad_u[1, 1]
+        trace, det = xx * xx + xy * xy + yx * yx + yy * yy, xx * yy - xy * yx
+        square = hoop * hoop
+        return trace + square, det * det + square * trace, det * hoop
 
     def area_vector(self, u: Any, trace_grad_u: Any) -> Any:
         """Spatial outward normal times da/dA on the outline (Nanson), shape (2,).
