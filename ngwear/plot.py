@@ -45,9 +45,9 @@ class ResultFile:
         return list(dict.fromkeys(s.kind for s in self.snapshots))
 
     def at(self, stroke: float, kind: str) -> Snapshot:
-        """The snapshot of a kind whose stroke is nearest."""
+        """The latest snapshot of a kind whose stroke is nearest."""
         mine = [s for s in self.snapshots if s.kind == kind]
-        return min(mine, key=lambda s: abs(s.stroke - stroke))
+        return min(reversed(mine), key=lambda s: abs(s.stroke - stroke))
 
 
 def read_result(folder: Path | str) -> ResultFile:

@@ -82,7 +82,7 @@ class Recorder:
         row: dict[str, Any] = {
             "stroke [-]": report.last_stroke,
             "kind [-]": cycle[report.phase].name,
-            "strokes in one solve [-]": report.repeats,
+            "strokes in one solve [-]": report.repeats,  # 0: the outline as it is, without wear
             "sliding distance [mm]": sliding,
             "worn area by the law [mm^2]": ledger.worn,
             "area removed from the outline [mm^2]": ledger.removed,

@@ -19,7 +19,7 @@ from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import smoothed
 from ngwear.remesh import is_due, remesh
-from ngwear.scene import Scene
+from ngwear.scene import Scene, Stroke
 from ngwear.stage import Stage, mounting_field
 from ngwear.state import Phase, State, StrokeReport
 from ngwear.wear.archard import critical_distance, worn_share
@@ -77,14 +77,14 @@ class Stepper:
         phases = len(scene.program.cycle)
         state.work.add(self._mount(stage))
         for i, stroke in enumerate(scene.program.cycle):
-            state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.25)))
+            state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
         while state.stage.outgrown([p.vector for p in state.phases]) and state.ledger.remeshes < 4:
             remesh(state)
             state.reports = []
             for i, stroke in enumerate(scene.program.cycle):
-                iterations = self._solve_phase(state, i, stroke)
+                iterations = self._solve_phase(state, i, stroke, far=state.ledger.remeshes == 1)
                 state.reports.append(self._observe(state, i, iterations))
             self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
         self.on_mount(1.0)
@@ -94,7 +94,7 @@ class Stepper:
         """Bring the surfaces to their places, without fluid pressure."""
         problem = stage.problem
         loads = {k: v for k, v in stage.stroke_loads(self.scene.program.cycle[0]).items() if "fluid" not in k}
-        options = StepOptions(first=0.25)
+        options = StepOptions(first=1 / 32)
 
         def report(fraction: float, _: Any) -> None:
             self.on_mount(0.7 * fraction)
@@ -145,7 +145,18 @@ class Stepper:
                 state.control.cut(cycles)
                 continue
             state.control.update(ratio, cycles)
+            if state.strokes in (*self.scene.save.strokes, program.strokes):
+                self._look(state)
             return state
+
+    def _look(self, state: State) -> None:
+        """Report each stroke of the cycle on the present outline, as if no wear went on; changes nothing else."""
+        for i, stroke in enumerate(self.scene.program.cycle):
+            saved = state.phases[i]
+            state.phases[i] = replace(saved, rate=None)
+            iterations = self._solve_phase(state, i, stroke)
+            state.reports.append(self._observe(state, i, iterations))
+            state.phases[i] = saved
 
     def _save(self, state: State) -> dict[str, Any]:
         return {
@@ -199,8 +210,13 @@ class Stepper:
             return math.nan
         return (state.ledger.area_error - error_before) / worn if worn > 0 else 0.0
 
-    def _solve_phase(self, state: State, index: int, stroke: Any, *, distance: float = 0.0, repeats: int = 0) -> int:
-        """Bring one stroke of the cycle to equilibrium, its wear over ``distance`` implicit; return iterations."""
+    def _solve_phase(
+        self, state: State, index: int, stroke: Stroke, *, distance: float = 0.0, repeats: int = 0, far: bool = False
+    ) -> int:
+        """Bring one stroke of the cycle to equilibrium, its wear over ``distance`` implicit; return iterations.
+
+        ``far`` says that the last state comes from a much coarser mesh: it is then walked from, not tried first.
+        """
         stage, phase = state.stage, state.phases[index]
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
@@ -210,7 +226,8 @@ class Stepper:
             stage.contacts[spec.name].compliance.Set(spec.specific_wear_rate * distance if implicit else 0.0)
         before, fresh = phase.vector, phase.rate is None
         work = Work()
-        for guess in [before] if fresh else [before + repeats * phase.rate, before]:
+        guesses = [before] if fresh else [before + repeats * phase.rate, before]
+        for guess in [] if far else guesses:
             vector[:] = guess
             for term in problem.terms:
                 term.refresh()
@@ -238,7 +255,7 @@ class Stepper:
             ledger=replace(state.ledger),
         )
 
-    def _approach(self, state: State, index: int, stroke: Any, work: Work) -> None:
+    def _approach(self, state: State, index: int, stroke: Stroke, work: Work) -> None:
         """Reach a stroke's equilibrium in steps: from its last state, else from the stroke before it in the cycle."""
         stage, cycle = state.stage, self.scene.program.cycle
         problem = stage.problem

@@ -54,15 +54,15 @@ class Work:
         self.retries += other.retries
 
 
-def settle(problem: Problem, options: StepOptions, work: Work) -> Report:
-    """Solve at the present loads, again while a term (the fluid front) asks for it."""
+def settle(problem: Problem, options: StepOptions, work: Work, *, update: bool = True) -> Report:
+    """Solve at the present loads, again while a term (the fluid front) asks for it, if ``update``."""
     newton = options.newton
     for _ in range(options.max_updates):
         report = solve(problem, newton)
         work.count(report)
         if not report.converged:
             return report
-        if not any([term.refresh() for term in problem.terms]):
+        if not update or not any([term.refresh() for term in problem.terms]):
             return report
         newton = replace(newton, first_augmentation=None)
     return report
@@ -92,7 +92,8 @@ def advance(
     rate = vector.CreateVector()
     last.data = vector
     have_rate = False
-    done, step, work = 0.0, options.first, Work()
+    moves = any(start[name] != target[name] for name in target)
+    done, step, work = 0.0, options.first if moves else 1.0, Work()
     while done < 1.0:
         step = min(step, 1.0 - done)
         if 1.0 - done - step < 1e-9:
@@ -101,10 +102,12 @@ def advance(
         problem.set_loads({name: start[name] + goal * (target[name] - start[name]) for name in target})
         if have_rate:
             vector.data = last + step * rate
-        report = settle(problem, options, work)
+        # On the way out of a guess the front stays: moving it would undo the balance walked from.
+        update = IMBALANCE not in target or goal == 1.0
+        report = settle(problem, options, work, update=update)
         if have_rate and not report.converged and report.outcome is Outcome.BAD_START:
             vector.data = last
-            report = settle(problem, options, work)
+            report = settle(problem, options, work, update=update)
         if not report.converged:
             vector.data = last
             have_rate = False
