@@ -125,11 +125,16 @@ class Stage:
         contour = self.body.contour
         mine = contour.on(spec.edges)
         points = contour.points[mine | np.roll(mine, 1)]
-        bite = 0.1 * self.scene.accuracy.mounting
+
+        def gaps(travel: float) -> Array:
+            return np.sort([float(spec.surface.gap(x - travel * ax, y - travel * ay)) for x, y in points])
 
         def smallest(travel: float) -> float:
-            return min(float(spec.surface.gap(x - travel * ax, y - travel * ay)) for x, y in points)
+            return float(gaps(travel)[0])
 
+        near = gaps(0.0)[:3]  # enough to press on the mesh edges beside the nearest point
+        bite = min(float(near[-1] - near[0]), 0.1 * self.scene.accuracy.mounting)
+        bite += 1e-6 * float(contour.lengths.min())
         travel, reach = 0.0, 10.0 * float(np.ptp(contour.points, axis=0).max())
         for _ in range(500):  # the gap is a distance: so far the surface can go without passing the place
             off = smallest(travel) + bite

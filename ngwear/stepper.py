@@ -150,13 +150,21 @@ class Stepper:
             return state
 
     def _look(self, state: State) -> None:
-        """Report each stroke of the cycle on the present outline, as if no wear went on; changes nothing else."""
+        """Report the strokes of the cycle other than the last one on the present outline; changes nothing else."""
+        latest = state.reports[-1].phase
         for i, stroke in enumerate(self.scene.program.cycle):
+            if i == latest:
+                continue
             saved = state.phases[i]
             state.phases[i] = replace(saved, rate=None)
             iterations = self._solve_phase(state, i, stroke)
-            state.reports.append(self._observe(state, i, iterations))
+            state.reports.insert(-1, self._observe(state, i, iterations))
             state.phases[i] = saved
+        problem = state.stage.problem
+        problem.set_loads(state.stage.stroke_loads(self.scene.program.cycle[latest]))
+        problem.state.vec.FV().NumPy()[:] = state.phases[latest].vector
+        for term in problem.terms:
+            term.refresh()
 
     def _save(self, state: State) -> dict[str, Any]:
         return {

@@ -100,7 +100,7 @@ def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
     state = stepper.start()
     while not stepper.finished(state):
         state = stepper.advance(state)
-        (report,) = state.reports
+        report = state.reports[0]
         profile = report.contacts[spec.name]
         distance = report.repeats * stroke.travel
         load = abs(float(report.forces[spec.name][1]))

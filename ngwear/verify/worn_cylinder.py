@@ -27,7 +27,7 @@ BLOCK = CylinderOnBlock(
     load=LOAD,
     wear_rate=WEAR_RATE,
     size=12.0,
-    patch=0.025,
+    patch=0.0125,
     travel=TRAVEL,
     wear_error=0.05,
 )
