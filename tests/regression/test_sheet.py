@@ -7,8 +7,8 @@ from ngwear.run import run
 SUMMARY = {
     "worn area [mm^2]": 0.020284,
     "maximum depth [mm]": 0.023798,
-    "first stroke roller peak pressure [MPa]": 0.60243,
-    "last stroke roller peak pressure [MPa]": 0.54911,
+    "first stroke roller peak pressure [MPa]": 0.59784,
+    "last stroke roller peak pressure [MPa]": 0.54279,
 }
 
 
