@@ -61,7 +61,7 @@ class Check:
             "value": float(self.value),
             "reference": float(self.reference),
             "error": float(self.error),
-            "tolerance": float(self.tolerance),
+            "tolerance": float(self.tolerance) if self.bound == "near" else 0.0,
             "passed": self.passed,
             "cpu_seconds": round(float(self.cpu_seconds), 3),
         }
