@@ -107,9 +107,7 @@ def plot(folder: Path | str) -> list[Path]:
         return []
     figures = {"mesh": mesh_figure, "profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
     written = []
-    with matplotlib.rc_context(
-        {"font.size": 10, "axes.grid": True, "grid.alpha": 0.3, "figure.constrained_layout.use": True}
-    ):
+    with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         for name, draw in figures.items():
             try:
                 figure = draw(result)
@@ -130,7 +128,7 @@ def _new(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=size)
+    figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, 1, sharex=share, height_ratios=heights, squeeze=False)[:, 0]
     return figure, list(axes)
