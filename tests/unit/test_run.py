@@ -11,12 +11,14 @@ import signal
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import pytest
 
 from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError
 from ngwear.results import CHECKPOINT, FIELDS, SERIES, SUMMARY, Folder
 from ngwear.run import COMPLETED, GAVE_UP, run
+from ngwear.scene import Save
 from ngwear.scenefile import read_scene
 from ngwear.stepper import Stepper
 
@@ -476,3 +478,12 @@ def test_checkpoint_holds_scene_state_and_records(finished):
     saved = pickle.loads((finished / CHECKPOINT).read_bytes())
     assert set(saved) == {"scene", "state", "recorder"}
     assert saved["state"].strokes == 4
+
+
+def test_vtk_on_request(tmp_path, sheet):
+    scene = replace(sheet, save=Save(vtk=True))
+    run(scene, out=tmp_path / "out", figures=False)
+    (file,) = (tmp_path / "out").glob("stroke_*.vtu")
+    content = file.read_bytes()
+    assert b"displacement" in content
+    assert b"volumetric_stress" in content
