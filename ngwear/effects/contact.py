@@ -60,8 +60,7 @@ class Contact(Term):
         self.name, self.edges, self.surface = name, tuple(edges), surface
         self.force_controlled = force_controlled
         self.modulus = modulus
-        self.default_augmentation = 13.0 * modulus
-        self.augmentation = ng.Parameter(self.default_augmentation)
+        self.augmentation = 13.0 * modulus
         self.floor = 1e-7 / modulus
         self.compliance = ng.Parameter(0.0)
         self.load = ng.Parameter(0.0)

@@ -43,15 +43,11 @@ class NewtonOptions:
     pressure_tolerance : float
         Largest accepted last correction of a nominal contact pressure over the highest one [-].
     max_iterations : int
-    first_augmentation : float or None
-        Contact augmentation c [MPa/mm] of the first iteration; large: trust the gap, not the pressure,
-        after a move to another mesh.
     """
 
     tolerance: float = 1e-7
     pressure_tolerance: float = 1e-3
     max_iterations: int = 25
-    first_augmentation: float | None = None
 
 
 @dataclass
@@ -100,9 +96,6 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     vector = problem.state.vec
     residual, correction, trial = (vector.CreateVector() for _ in range(3))
     report = Report(Outcome.TOO_MANY_ITERATIONS)
-    if options.first_augmentation is not None:
-        for contact in contacts:
-            contact.augmentation.Set(options.first_augmentation)
     problem.residual(residual)
     if not math.isfinite(ng.Norm(residual)):
         report.outcome = Outcome.BAD_START
@@ -117,9 +110,6 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         if not report.linear_residual < RESIDUAL_TOLERANCE:
             report.outcome = Outcome.SINGULAR
             break
-        if report.iterations == 1 and options.first_augmentation is not None:
-            for contact in contacts:
-                contact.augmentation.Set(contact.default_augmentation)
         step, trial.data = 1.0, vector
         for _ in range(HALVINGS):
             vector.data = trial - step * correction
@@ -142,8 +132,6 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         if _stalled(report.corrections):
             report.outcome = Outcome.STALLED
             break
-    for contact in contacts:
-        contact.augmentation.Set(contact.default_augmentation)
     return report
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
@@ -56,15 +56,13 @@ class Work:
 
 def settle(problem: Problem, options: StepOptions, work: Work, *, update: bool = True) -> Report:
     """Solve at the present loads, again while a term (the fluid front) asks for it, if ``update``."""
-    newton = options.newton
     for _ in range(options.max_updates):
-        report = solve(problem, newton)
+        report = solve(problem, options.newton)
         work.count(report)
         if not report.converged:
             return report
         if not update or not any([term.refresh() for term in problem.terms]):
             return report
-        newton = replace(newton, first_augmentation=None)
     return report
 
 

@@ -4,12 +4,14 @@ Plane strain sheet 20 x 2 mm, bottom bonded, sides free; cylinder R = 5 mm; Moon
 C01 = 0.15, K = 1000 MPa; half of it by symmetry. Forces F are N per mm of thickness of the whole sheet,
 a is half the distance between the deformed ends of the contact [mm], p the peak Cauchy pressure [MPa].
 
-References: the limit of fine meshes in four independent programs (FElupe, GetFEM, NGSolve, Kratos) gives
-F = 5.3572 +- 0.0005 N/mm and p = 2.039 +- 0.002 MPa at an indentation of d = 0.30 mm, and
-d = 0.2538 +- 0.0001 mm and p = 1.671 +- 0.003 MPa at F = 4 N/mm. The half widths that those programs read
-at their nodes, 1.762 +- 0.003 and 1.570 +- 0.006 mm, are too rough for 0.3 %. They are replaced by
-a = 1.756 +- 0.001 and 1.582 +- 0.001 mm: the zero of the gap on elements of 5 um under a pure penalty of
-2e3, 5e3 and 1e4 MPa/mm, in bare NGSolve forms without this package's contact, extrapolated to infinity.
+References: the limit of fine meshes in four independent programs (FElupe, GetFEM, NGSolve, Kratos):
+F = 5.3572 +- 0.0005 N/mm, a = 1.762 +- 0.003 mm, p = 2.039 +- 0.002 MPa at an indentation of d = 0.30 mm;
+d = 0.2538 +- 0.0001 mm, a = 1.570 +- 0.006 mm, p = 1.671 +- 0.003 MPa at F = 4 N/mm.
+
+The two half widths are missed by 0.35 and 0.76 %. On elements of 2.5 to 5 um at the contact's end they
+converge to 1.756 and 1.582 mm, and so does the zero of the gap under a pure penalty of 2e3, 5e3 and
+1e4 MPa/mm extrapolated to infinity; the published ones, read at nodes, may be the rougher. As long as nobody
+else has confirmed that, both checks stand as failed.
 """
 
 from __future__ import annotations
@@ -62,7 +64,7 @@ def run() -> list[Check]:
     advance(problem, {"roller approach [mm]": 0.30})
     half_width, peak = width_and_peak(contact)
     add("force at d = 0.30 mm [N/mm]", -2 * contact.force()[1], 5.3572, 3e-4)
-    add("half width at d = 0.30 mm [mm]", half_width, 1.756, 3e-3)
+    add("half width at d = 0.30 mm [mm]", half_width, 1.762, 3e-3)
     add("peak pressure at d = 0.30 mm [MPa]", peak, 2.039, 3e-3)
 
     clock.start()
@@ -72,6 +74,6 @@ def run() -> list[Check]:
     advance(problem, {"roller force [N]": 4.0 / 2})
     half_width, peak = width_and_peak(contact)
     add("indentation at F = 4 N/mm [mm]", travel[0], 0.2538, 4e-4)
-    add("half width at F = 4 N/mm [mm]", half_width, 1.582, 3e-3)
+    add("half width at F = 4 N/mm [mm]", half_width, 1.570, 3e-3)
     add("peak pressure at F = 4 N/mm [MPa]", peak, 1.671, 3e-3)
     return checks
