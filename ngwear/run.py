@@ -136,8 +136,7 @@ def _write_vtk(path: Path, state: State) -> None:
     """Write the last state of each stroke of the cycle for ParaView."""
     import ngsolve as ng
 
-    from ngwear.effects.base import DISPLACEMENT
-    from ngwear.effects.elasticity import PRESSURE
+    from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 
     stage = state.stage
     for stroke, phase in zip(stage.scene.program.cycle, state.phases, strict=True):
@@ -145,8 +144,8 @@ def _write_vtk(path: Path, state: State) -> None:
         fields = stage.problem.fields
         writer = ng.VTKOutput(
             stage.body.mesh,
-            coefs=[fields[DISPLACEMENT], fields[PRESSURE]],
-            names=[DISPLACEMENT, PRESSURE.replace(" ", "_")],
+            coefs=[fields[DISPLACEMENT], fields[VOLUMETRIC_STRESS]],
+            names=[DISPLACEMENT, VOLUMETRIC_STRESS.replace(" ", "_")],
             filename=str(path / f"stroke_{state.strokes}_{stroke.name}"),
             subdivision=1,
         )

@@ -180,7 +180,7 @@ class Stage:
         if self.fluid is not None:
             found["fluid"] = self.fluid.force()
         if self.scene.axisymmetric:
-            found["hoop"] = np.array([0.0, -self.elasticity.hoop_force()])
+            found["hoop"] = np.array([0.0, -self.elasticity.hoop_force(self.problem.state.vec.FV().NumPy())])
         return found
 
     def wanted_size(self, phases: list[Array]) -> SizeField:

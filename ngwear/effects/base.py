@@ -7,22 +7,29 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
 
 from ngwear.fields.kinematics import Kinematics
+from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.body import Body
 
+Array = NDArray[np.float64]
+
 DISPLACEMENT = "displacement"
+VOLUMETRIC_STRESS = "volumetric stress"
 
 
 @dataclass(frozen=True)
 class Unknowns:
-    """Trial and test functions by name, and the body and kinematics they live on."""
+    """Trial and test functions and state by name, and the body, kinematics and material points they live on."""
 
     body: Body
     kinematics: Kinematics
     trial: dict[str, Any]
     test: dict[str, Any]
     state: dict[str, ng.GridFunction] = field(default_factory=dict)
+    points: MaterialPoints | None = None
 
     @property
     def u(self) -> Any:
@@ -54,7 +61,7 @@ class Term(abc.ABC):
 
     @abc.abstractmethod
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
-        """Add energies (``Variation``) or forms to the equilibrium."""
+        """Add energies (``Variation``) or forms on the outline to the equilibrium."""
 
     def prepare(self) -> None:  # noqa: B027 - most terms have nothing to freeze
         """Freeze, from the state that a solve starts from, what stays fixed in that solve."""
@@ -62,3 +69,18 @@ class Term(abc.ABC):
     def refresh(self) -> bool:
         """After a solve, update what was fixed in it; True asks for another solve."""
         return False
+
+
+class VolumeTerm(Term):
+    """A term of the section's inside: a stress at each material point."""
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        """Nothing on the outline."""
+
+    @abc.abstractmethod
+    def response(self, strain: Array, *, tangent: bool) -> tuple[Array, Array | None]:
+        """Stress conjugate to the strain of ``fields.material_points`` and, if asked for, its derivative.
+
+        Shapes (..., 6) and (..., 6, 6), per reference volume; not a number where the strain is not admissible
+        (J <= 0).
+        """

@@ -9,9 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.contact import Contact
-from ngwear.effects.elasticity import PRESSURE
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
@@ -39,8 +38,8 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         nodes = search(old.fields[DISPLACEMENT])
         where = new.part(DISPLACEMENT)
         target[where] = np.concatenate([nodal.join(nodes[:, k], new.body.edges) for k in range(2)])
-        stress = search(old.fields[PRESSURE])[: new.body.mesh.nv, 0]
-        target[new.part(PRESSURE)] = stress
+        stress = search(old.fields[VOLUMETRIC_STRESS])[: new.body.mesh.nv, 0]
+        target[new.part(VOLUMETRIC_STRESS)] = stress
         for before, after in _contact_pairs(old, new):
             index, weight, same, twin = near[after.name]
             ends = (before.profile().nominal_pressure[index] * weight).sum(axis=-1)

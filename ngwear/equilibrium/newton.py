@@ -11,7 +11,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import Contact
-from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE
+from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE, norm
 from ngwear.equilibrium.problem import Problem
 
 
@@ -27,7 +27,7 @@ class Outcome(enum.Enum):
 
 
 HALVINGS = 7  # of a correction that would fold an element
-NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept once
+NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept
 PATIENCE = 8  # iterations within which the smallest correction must halve
 
 
@@ -97,11 +97,13 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     residual, correction, trial = (vector.CreateVector() for _ in range(3))
     report = Report(Outcome.TOO_MANY_ITERATIONS)
     problem.residual(residual)
-    if not math.isfinite(ng.Norm(residual)):
+    if not math.isfinite(norm(residual)):
         report.outcome = Outcome.BAD_START
         return report
+    kept = False
     for report.iterations in range(1, options.max_iterations + 1):
-        if not _nearly_there(report.corrections, options.tolerance * size):
+        kept = not kept and _nearly_there(report.corrections, NEARLY * options.tolerance * size)
+        if not kept:
             solver = problem.tangent()
         if solver is None:
             report.outcome = Outcome.SINGULAR
@@ -114,7 +116,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         for _ in range(HALVINGS):
             vector.data = trial - step * correction
             problem.residual(residual)
-            report.residual = float(ng.Norm(residual))
+            report.residual = norm(residual)
             if math.isfinite(report.residual):
                 break
             step /= 2
@@ -143,14 +145,13 @@ def _settled(vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice
     return bool(moved <= options.pressure_tolerance * highest or highest == 0.0)
 
 
-def _nearly_there(corrections: list[float], goal: float) -> bool:
-    """Whether the last correction is the first so small that the next one is likely to be the last.
+def _nearly_there(corrections: list[float], mark: float) -> bool:
+    """Whether the last correction is the first so small that the tangent at hand will do once more.
 
-    The next one is then taken with the tangent at hand: it differs from Newton's own by about the last correction
-    over the section's size. If it is not the last (the contact has changed), the tangent is new again.
+    It differs from Newton's own by about the last correction over the size of an element in contact, and saves
+    assembly and factorisation, four fifths of an iteration.
     """
-    mark = NEARLY * goal
-    return len(corrections) > 1 and goal < corrections[-1] <= mark < corrections[-2]
+    return len(corrections) > 1 and corrections[-1] <= mark < corrections[-2]
 
 
 def _stalled(corrections: list[float]) -> bool:

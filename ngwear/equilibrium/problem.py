@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,14 +11,15 @@ import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
-from ngwear.equilibrium.linear import DirectSolver
+from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns, VolumeTerm
+from ngwear.equilibrium.linear import DirectSolver, Tangent
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Kinematics
+from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.body import Body
 
 Array = NDArray[np.float64]
-THREADED_FROM = 12_000  # unknowns; below, waking the second core costs more than it brings
+THREADED_FROM = 60_000  # unknowns; below, two threads take more time waking each other than they save
 
 IMBALANCE = "imbalance"
 
@@ -77,20 +78,28 @@ class Problem:
         self.state = ng.GridFunction(self.space)
         self.fields = dict(zip(self.names, self.state.components, strict=True))
         self.form = ng.BilinearForm(self.space, check_unused=False)
+        self._volume = [term for term in self.terms if isinstance(term, VolumeTerm)]
+        self.points: MaterialPoints | None = None
+        if self._volume:
+            places = {"displacement": self.part(DISPLACEMENT), "pressure": self.part(VOLUMETRIC_STRESS)}
+            self.points = MaterialPoints(body, kinematics, order=order, **places)
         unknowns = Unknowns(
             body=body,
             kinematics=kinematics,
             trial=dict(zip(self.names, self.space.TrialFunction(), strict=True)),
             test=dict(zip(self.names, self.space.TestFunction(), strict=True)),
             state=self.fields,
+            points=self.points,
         )
         for term in self.terms:
             term.add_to(self.form, unknowns)
+        self._held = ~np.fromiter(self.free, dtype=bool, count=self.space.ndof)
         self.symmetric = all(term.symmetric for term in self.terms)
         self.parameters: dict[str, ng.Parameter] = {}
         for term in self.terms:
             self.parameters |= term.loads
         self._imbalance: ng.BaseVector | None = None
+        self._matrix: Tangent | None = None
         self._solver: DirectSolver | None = None
 
     def freeze_imbalance(self) -> None:
@@ -133,23 +142,46 @@ class Problem:
         """The loads as they are."""
         return {name: parameter.Get() for name, parameter in self.parameters.items()}
 
-    def threads(self) -> Any:
-        """Context in which NGSolve uses both cores if the problem is large enough to gain by it."""
+    def threads(self) -> AbstractContextManager[Any]:
+        """Context of a solve: all cores if the problem is large enough to gain by them, else one."""
         return ng.TaskManager() if self.space.ndof >= THREADED_FROM else nullcontext()
 
     def residual(self, out: ng.BaseVector) -> None:
         """Write the residual at the present state, zero on prescribed unknowns."""
         self.form.Apply(self.state.vec, out)
-        out.data = ng.Projector(self.free, True) * out
+        values = out.FV().NumPy()
+        if self.points is not None:
+            stress, _ = self._response(tangent=False)
+            forces = self.points.forces(stress)
+            values += np.bincount(self.points.unknowns.ravel(), forces.ravel(), minlength=len(values))
+        values[self._held] = 0.0
         if self._imbalance is not None:
             out.data -= self.parameters[IMBALANCE].Get() * self._imbalance
+
+    def assemble(self) -> ng.BaseMatrix:
+        """The tangent at the present state."""
+        self.form.AssembleLinearization(self.state.vec)
+        if self.points is None:
+            return self.form.mat
+        _, slope = self._response(tangent=True)
+        if self._matrix is None:
+            self._matrix = Tangent(self.form.mat, self.points.unknowns)
+        self._matrix.fill(self.form.mat, self.points.stiffness(slope))
+        return self._matrix.matrix
+
+    def _response(self, *, tangent: bool) -> tuple[Array, Array | None]:
+        """Stress of all terms inside the section, and its derivative."""
+        self.points.follow()
+        strain = self.points.strain(self.state.vec.FV().NumPy())
+        responses = [term.response(strain, tangent=tangent) for term in self._volume]
+        return sum(stress for stress, _ in responses), sum(slope for _, slope in responses) if tangent else None
 
     def tangent(self) -> DirectSolver | None:
         """Assemble and factorise the tangent at the present state; None if it is singular or not finite."""
         try:
-            self.form.AssembleLinearization(self.state.vec)
+            matrix = self.assemble()
         except ng.NgException:
             return None
         if self._solver is None:
-            self._solver = DirectSolver(self.form.mat, self.free, symmetric=self.symmetric)
+            self._solver = DirectSolver(matrix, self.free, symmetric=self.symmetric)
         return self._solver if self._solver.factorise() else None

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
+
+LOOSER = 1e3  # tolerance of a solve on the way, which is only the start of the next, over the last one's
 
 
 @dataclass(frozen=True)
@@ -92,6 +94,8 @@ def advance(
     have_rate = False
     moves = any(start[name] != target[name] for name in target)
     done, step, work = 0.0, options.first if moves else 1.0, Work()
+    loose = options.newton.tolerance * LOOSER
+    on_the_way = replace(options, newton=replace(options.newton, tolerance=loose))
     while done < 1.0:
         step = min(step, 1.0 - done)
         if 1.0 - done - step < 1e-9:
@@ -102,10 +106,11 @@ def advance(
             vector.data = last + step * rate
         # On the way out of a guess the front stays: moving it would undo the balance walked from.
         update = IMBALANCE not in target or goal == 1.0
-        report = settle(problem, options, work, update=update)
+        here = options if goal == 1.0 else on_the_way
+        report = settle(problem, here, work, update=update)
         if have_rate and not report.converged and report.outcome is Outcome.BAD_START:
             vector.data = last
-            report = settle(problem, options, work, update=update)
+            report = settle(problem, here, work, update=update)
         if not report.converged:
             vector.data = last
             have_rate = False

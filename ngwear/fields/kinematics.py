@@ -27,17 +27,6 @@ class Kinematics(abc.ABC):
     def hoop_stretch(self, u: Any) -> Any:
         """Stretch out of the section's plane: 1, or 1 + u_r / R."""
 
-    def invariants(self, u: Any, grad_u: Any, *, hoop: Any = None) -> tuple[Any, Any, Any]:
-        """Return I1 and I2 of C = F^T F and J = det F for the gradient ``grad_u`` (2 x 2) of u.
-
-        ``hoop`` stands for the hoop stretch if it is given, to differentiate by it.
-        """
-        hoop = self.hoop_stretch(u) if hoop is None else hoop
-        xx, xy, yx, yy = 1 + grad_u[0, 0], grad_u[0, 1], grad_u[1, 0], 1 + grad_u[1, 1]
-        trace, det = xx * xx + xy * xy + yx * yx + yy * yy, xx * yy - xy * yx
-        square = hoop * hoop
-        return trace + square, det * det + square * trace, det * hoop
-
     def area_vector(self, u: Any, trace_grad_u: Any) -> Any:
         """Spatial outward normal times da/dA on the outline (Nanson), shape (2,).
 

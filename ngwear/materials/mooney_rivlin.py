@@ -46,3 +46,6 @@ class MooneyRivlin(Hyperelastic):
 
     def isochoric_energy(self, i1_bar: Any, i2_bar: Any) -> Any:
         return self.c10 * (i1_bar - 3) + self.c01 * (i2_bar - 3)
+
+    def isochoric_slopes(self, i1_bar: Any, i2_bar: Any) -> tuple[Any, Any, Any, Any, Any]:
+        return self.c10, self.c01, 0.0, 0.0, 0.0

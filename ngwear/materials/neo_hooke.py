@@ -47,3 +47,6 @@ class NeoHooke(Hyperelastic):
 
     def isochoric_energy(self, i1_bar: Any, i2_bar: Any) -> Any:
         return 0.5 * self.shear * (i1_bar - 3)
+
+    def isochoric_slopes(self, i1_bar: Any, i2_bar: Any) -> tuple[Any, Any, Any, Any, Any]:
+        return 0.5 * self.shear, 0.0, 0.0, 0.0, 0.0

@@ -16,9 +16,9 @@ from collections.abc import Iterator
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns
 from ngwear.effects.contact import Contact
-from ngwear.effects.elasticity import PRESSURE, Elasticity
+from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.problem import Problem
@@ -66,7 +66,7 @@ def _set_state(problem: Problem, rng: np.random.Generator) -> None:
     for name, field in problem.fields.items():
         if name == DISPLACEMENT:
             field.Set(ng.CF((wave(0, 0.1), wave(0, 0.1))))
-        elif name == PRESSURE:
+        elif name == VOLUMETRIC_STRESS:
             field.Set(wave(0, 1))
         elif field.space.ndof == 1:
             field.vec[0] = 0.05
@@ -79,13 +79,11 @@ def tangent_error(problem: Problem, rng: np.random.Generator) -> float:
     state = problem.state.vec
     direction, product, ahead, behind = (state.CreateVector() for _ in range(4))
     direction.FV().NumPy()[:] = rng.uniform(-1, 1, len(direction))
-    problem.form.AssembleLinearization(state)
-    product.data = problem.form.mat * direction
-    moved = state.CreateVector()
-    moved.data = state + STEP * direction
-    problem.form.Apply(moved, ahead)
-    moved.data = state - STEP * direction
-    problem.form.Apply(moved, behind)
+    product.data = problem.assemble() * direction
+    state.data += STEP * direction
+    problem.residual(ahead)
+    state.data -= 2 * STEP * direction
+    problem.residual(behind)
     exact = product.FV().NumPy()
     off = (ahead.FV().NumPy() - behind.FV().NumPy()) / (2 * STEP) - exact
     errors = []
