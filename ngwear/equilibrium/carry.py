@@ -14,6 +14,7 @@ from ngwear.effects.contact import Contact
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
+from ngwear.geometry.harmonic import HarmonicFill
 
 Array = NDArray[np.float64]
 LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled
@@ -82,9 +83,8 @@ def _fill_harmonically(u: ng.GridFunction, marked: NDArray[np.bool_]) -> None:
                 free[dof] = False
     v, w = space.TnT()
     matrix = ng.BilinearForm(ng.InnerProduct(ng.Grad(v), ng.Grad(w)) * ng.dx).Assemble().mat
-    residual = u.vec.CreateVector()
-    residual.data = matrix * u.vec
-    u.vec.data -= matrix.Inverse(free, inverse="sparsecholesky") * residual
+    values = u.vec.FV().NumPy()
+    values[:] = HarmonicFill(matrix, np.fromiter(free, dtype=bool))(values)
 
 
 def _contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:

@@ -7,6 +7,7 @@ from functools import lru_cache
 
 import ngsolve as ng
 import numpy as np
+from netgen.libngpy._meshing import NgException
 from numpy.typing import NDArray
 
 RESIDUAL_TOLERANCE = 1e-6
@@ -47,7 +48,8 @@ class Tangent:
         _, columns, rows = (np.array(part).astype(np.int64) for part in outline.CSR())
         edge = np.repeat(np.arange(size), np.diff(rows)) * size + columns
         inside = (unknowns[:, :, None] * size + unknowns[:, None, :]).ravel()
-        places = np.sort(np.concatenate([edge, inside]))
+        diagonal = np.arange(size) * (size + 1)
+        places = np.sort(np.concatenate([edge, inside, diagonal]))
         places = places[np.concatenate([[True], places[1:] > places[:-1]])]
         self._edge, self._inside = np.searchsorted(places, edge), np.searchsorted(places, inside)
         self.matrix = ng.la.SparseMatrixd.CreateFromCOO(
@@ -64,13 +66,16 @@ class Tangent:
 class DirectSolver:
     """Factorise a tangent matrix again and again, reusing the symbolic part.
 
-    Symmetric matrices take LDL^T, unsymmetric ones LU (``pardiso`` if the ``fast`` extra is installed, else
-    ``umfpack``). NGSolve's ``sparsecholesky`` returns nonsense for an unsymmetric matrix without an error;
-    here the residual of every solve is checked.
+    Symmetric matrices take LDL^T, unsymmetric ones LU: by ``pardiso`` if the ``fast`` extra is installed, else by
+    ``sparsecholesky`` and ``umfpack``. NGSolve's ``sparsecholesky`` returns nonsense for an unsymmetric matrix
+    without an error; here the residual of every solve is checked.
 
-    The same matrix and right side give the same solution, bit for bit, also on several threads: a run that is
-    killed and resumed repeats itself. PARDISO does so in its reproducible mode; ``sparsecholesky`` only on one
-    thread, so on several PARDISO takes its place.
+    With PARDISO (in its reproducible mode) the same matrix and right side give the same solution, bit for bit,
+    so that a run that is killed and resumed repeats itself; ``sparsecholesky`` differs from one factorisation to
+    the next by rounding. PARDISO orders and scales by the values of the first matrix that it sees and keeps to
+    that; a matrix with another contact then lost all but one digit. So it is shown one that depends on the
+    pattern only (diagonal 1, small pseudo-random numbers elsewhere: it pivots where it finds no symmetry), and
+    each matrix is scaled here.
 
     Parameters
     ----------
@@ -78,51 +83,79 @@ class DirectSolver:
     free : ng.BitArray
         Unknowns that are not prescribed.
     symmetric : bool
+    stiff : slice
+        Unknowns with a stiffness of their own (displacements); the others get their scale from their coupling
+        to these.
     """
 
-    def __init__(self, matrix: ng.BaseMatrix, free: ng.BitArray, *, symmetric: bool) -> None:
+    def __init__(self, matrix: ng.BaseMatrix, free: ng.BitArray, *, symmetric: bool, stiff: slice) -> None:
         self.matrix, self.free = matrix, free
         self._mask = np.fromiter(free, dtype=bool, count=len(free))
-        threads = ng.GetNumThreads()
-        if symmetric and (threads == 1 or not has_pardiso()):
-            self.name, self.flags = "sparsecholesky", {}
-        elif has_pardiso():
+        if has_pardiso():
             # iparm33: reproducible on that many threads. Refinement is done, and its need seen, below.
             self.name = "pardiso"
-            self.flags = {"ordering": "metis", "symmetric": symmetric, "refinement": 0, "iparm33": threads}
+            self.flags = {"ordering": "metis", "symmetric": symmetric, "refinement": 0, "iparm33": ng.GetNumThreads()}
         else:
-            self.name, self.flags = "umfpack", {}
+            self.name, self.flags = "sparsecholesky" if symmetric else "umfpack", {}
+        _, columns, rows = (np.array(part).astype(np.int64) for part in matrix.CSR())
+        self._columns = columns
+        self._rows = np.repeat(np.arange(matrix.height), np.diff(rows))
+        self._diagonal = np.flatnonzero(self._rows == columns)
+        is_stiff = np.zeros(matrix.height, dtype=bool)
+        is_stiff[stiff] = True
+        # Entries that couple another unknown to a stiff one.
+        self._couplings = np.flatnonzero(~is_stiff[self._rows] & is_stiff[columns])
+        self._scale: NDArray[np.float64] | float = 1.0
         self._inverse: ng.BaseMatrix | None = None
 
     def factorise(self) -> bool:
-        """Factorise the matrix as it is now; False if it is singular."""
+        """Factorise the matrix as it is now, scaling it in its place; False if it is singular."""
+        values = self.matrix.AsVector().FV().NumPy()
+        if self.name == "pardiso":
+            self._scale = self._scaling(values)
+            values *= self._scale[self._rows] * self._scale[self._columns]
         try:
             if self._inverse is None:
+                now = values.copy()
+                if self.name == "pardiso":
+                    values[:] = np.random.default_rng(0).uniform(-0.01, 0.01, len(values))
+                    values[self._diagonal] = 1.0
                 self._inverse = self.matrix.Inverse(self.free, inverse=self.name, flags=self.flags)
-            else:
-                self._inverse.Update()
-        except ng.NgException:
+                values[:] = now
+                if self.name != "pardiso":
+                    return True
+            self._inverse.Update()
+        except (NgException, RuntimeError):  # NGSolve's and PARDISO's
             self._inverse = None
             return False
         return True
 
+    def _scaling(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Factors of rows and columns that bring stiffnesses, and the couplings to them, near 1."""
+        size = np.zeros(len(self._mask))
+        size[self._rows[self._diagonal]] = np.sqrt(np.abs(values[self._diagonal]))
+        at, to = self._rows[self._couplings], size[self._columns[self._couplings]]
+        coupling = np.abs(values[self._couplings]) / np.where(to > 0, to, np.inf)
+        np.maximum.at(size, at, coupling)
+        return 1 / np.where(size > 0, size, 1.0)
+
     def solve(self, right_side: ng.BaseVector, solution: ng.BaseVector) -> float:
         """Solve into ``solution``; return the relative residual (inf if not finite)."""
-        scale = self._norm(right_side)
+        scaled, rest = right_side.CreateVector(), right_side.CreateVector()
+        scaled.FV().NumPy()[:] = self._scale * right_side.FV().NumPy()
+        scale = norm(scaled, self._mask)
         if scale == 0.0:
             solution[:] = 0.0
             return 0.0
-        solution.data = self._inverse * right_side
-        rest = right_side.CreateVector()
-        rest.data = right_side - self.matrix * solution
-        residual = self._norm(rest) / scale
+        solution.data = self._inverse * scaled
+        rest.data = scaled - self.matrix * solution
+        residual = norm(rest, self._mask) / scale
         for _ in range(REFINEMENTS):
             if not residual > REFINE_ABOVE:
                 break
             solution.data += self._inverse * rest
-            rest.data = right_side - self.matrix * solution
-            residual = self._norm(rest) / scale
+            rest.data = scaled - self.matrix * solution
+            residual = norm(rest, self._mask) / scale
+        values = solution.FV().NumPy()
+        values *= self._scale
         return residual if residual == residual else float("inf")
-
-    def _norm(self, vector: ng.BaseVector) -> float:
-        return norm(vector, self._mask)

@@ -9,6 +9,7 @@ from typing import Any
 
 import ngsolve as ng
 import numpy as np
+from netgen.libngpy._meshing import NgException
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns, VolumeTerm
@@ -180,8 +181,8 @@ class Problem:
         """Assemble and factorise the tangent at the present state; None if it is singular or not finite."""
         try:
             matrix = self.assemble()
-        except ng.NgException:
+        except NgException:
             return None
         if self._solver is None:
-            self._solver = DirectSolver(matrix, self.free, symmetric=self.symmetric)
+            self._solver = DirectSolver(matrix, self.free, symmetric=self.symmetric, stiff=self.part(DISPLACEMENT))
         return self._solver if self._solver.factorise() else None

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ngwear.errors import MeshError
 from ngwear.geometry import nodal, section
 from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.harmonic import HarmonicFill
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 
@@ -76,22 +77,31 @@ class Body:
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=2))
 
     def __getstate__(self) -> dict[str, object]:
-        return {"field": self.field, "base": self.base, "contour": self.contour, "mesh": self.mesh}
+        moved = self.deformation.vec.FV().NumPy().copy()
+        return {
+            "field": self.field,
+            "base": self.base,
+            "contour": self.contour,
+            "mesh": self.mesh,
+            "deformation": moved,
+        }
 
     def __setstate__(self, saved: dict[str, object]) -> None:
+        moved = saved.pop("deformation")
         self.__dict__.update(saved)
-        contour, self.contour = self.contour, self.base
         self._set_up()
-        self.move_to(contour)
+        self.deformation.vec.FV().NumPy()[:] = moved  # as it was, to the last bit
+        self._deform()
 
     @cached_property
-    def _extension(self) -> tuple[ng.BaseMatrix, ng.BaseMatrix]:
-        """Stiffness of the harmonic extension and its inverse on the inner unknowns of one component."""
+    def _extension(self) -> HarmonicFill:
+        """Harmonic extension of one component of the outline's displacement into the mesh as it was made."""
+        self.mesh.UnsetDeformation()
         space = ng.H1(self.mesh, order=2, dirichlet=".*")
         u, v = space.TnT()
-        h = ng.specialcf.mesh_size
-        matrix = ng.BilinearForm(ng.grad(u) * ng.grad(v) / h * ng.dx).Assemble().mat
-        return matrix, matrix.Inverse(space.FreeDofs(), inverse="sparsecholesky")
+        matrix = ng.BilinearForm(ng.grad(u) * ng.grad(v) / ng.specialcf.mesh_size * ng.dx).Assemble().mat
+        self._deform()
+        return HarmonicFill(matrix, np.fromiter(space.FreeDofs(), dtype=bool))
 
     def move_to(self, contour: Contour) -> None:
         """Let the mesh follow to an outline that has the points of ``base``, displaced.
@@ -101,7 +111,6 @@ class Body:
         MeshError
             If an element would fold or be distorted beyond use; the body is left as it was.
         """
-        matrix, inverse = self._extension
         displacement = contour.points - self.base.points
         controls = self.base.controls(displacement)
         line, field = self.outline, self.deformation
@@ -110,20 +119,18 @@ class Body:
             values = np.zeros(self.mesh.nv + len(self.edges))
             values[line.vertices[:, 0]] = self.base.at(line.t[:, 0], controls)[:, component]
             values[self.mesh.nv + line.edge] = self.base.at(line.t.mean(axis=1), controls)[:, component]
-            inner = nodal.join(values, self.edges)
-            bound = np.zeros_like(inner)
-            bound[line.vertices[:, 0]] = inner[line.vertices[:, 0]]
-            bound[self.mesh.nv + line.edge] = inner[self.mesh.nv + line.edge]
-            vector = field.components[component].vec
-            vector.FV().NumPy()[:] = bound
-            vector.data -= inverse @ matrix * vector
+            field.components[component].vec.FV().NumPy()[:] = self._extension(nodal.join(values, self.edges))
         lowest = self._lowest_jacobian(field)
         if not lowest > 0.3:
             field.vec.FV().NumPy()[:] = before
             raise MeshError(f"moving the mesh with the outline would shrink an element to {lowest:.2f} of its size")
         self.contour = contour
-        if np.any(displacement):
-            self.mesh.SetDeformation(field)
+        self._deform()
+
+    def _deform(self) -> None:
+        """Let the mesh be where the outline is."""
+        if np.any(self.contour.points != self.base.points):
+            self.mesh.SetDeformation(self.deformation)
         else:
             self.mesh.UnsetDeformation()
 
@@ -131,8 +138,7 @@ class Body:
         self.mesh.UnsetDeformation()
         jacobian = ng.Det(ng.Id(2) + ng.Grad(field))
         lowest = float(np.min(jacobian(self.mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 2), ng.VOL))))
-        if np.any(self.contour.points != self.base.points):
-            self.mesh.SetDeformation(field)
+        self._deform()
         return lowest
 
     @cached_property

@@ -1,0 +1,39 @@
+"""Harmonic fill of a field on a mesh: the part held goes on smoothly into the part left free."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import splu
+
+Array = NDArray[np.float64]
+
+
+class HarmonicFill:
+    """Solve ``div grad u = 0`` (or with a given stiffness) for the free unknowns of a field.
+
+    SciPy's LU, because NGSolve's ``sparsecholesky`` rounds differently each time it is built, and a run that is
+    killed and resumed must repeat itself.
+
+    Parameters
+    ----------
+    matrix : ng.BaseMatrix
+        Symmetric, positive definite on the free unknowns.
+    free : array of bool
+    """
+
+    def __init__(self, matrix: ng.BaseMatrix, free: NDArray[np.bool_]) -> None:
+        self._stiffness = csr_array(tuple(np.array(part) for part in matrix.CSR()))
+        self._free = np.flatnonzero(free)
+        inner = self._stiffness[self._free][:, self._free].tocsc()
+        # Positive definite: no pivoting, which would fill the factors.
+        self._lu = splu(inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+    def __call__(self, values: Array) -> Array:
+        """The held values, and the free ones filled in."""
+        filled = values.copy()
+        filled[self._free] = 0.0
+        filled[self._free] = -self._lu.solve((self._stiffness @ filled)[self._free])
+        return filled
