@@ -15,13 +15,14 @@ import numpy as np
 
 TIP = (3.15, 10.2)  # lip tip: axial position and radius [mm]
 TIP_RADIUS = 0.02
-FLANKS = (25.0, 22.0)  # degrees from the rod axis, air side and sealed side
+FLANKS = (42.0, 40.0)  # degrees from the rod axis, air side and sealed side
+FOOT_RADIUS = 0.05  # where the flanks leave the section
 PITCH = 0.33
-LEFT = 0.25  # where the first left ridge begins
-LEFT_BASE = (10.50, 10.31)  # radius of the ridge roots at the first and after the last left ridge
+LEFT = 0.665  # where the first left ridge begins
+LEFT_BASE = (10.475, 10.302)  # radius of the ridge roots at the first and after the last left ridge
 LEFT_HEIGHT = 0.10
-RIGHT = 3.66
-RIGHT_BASE = (10.335, 10.58)
+RIGHT = 3.355
+RIGHT_BASE = (10.312, 10.58)
 RIGHT_HEIGHT = 0.10
 SPACING = 0.0095  # ridges
 
@@ -88,7 +89,8 @@ def edges() -> list[tuple[str, np.ndarray]]:
     foot_left = (apex[0] - (left[-1, 1] - apex[1]) / np.tan(alpha), left[-1, 1])
     foot_right = (apex[0] + (right[0, 1] - apex[1]) / np.tan(beta), right[0, 1])
     lip = rounded(
-        [(*left[-1], 0), (*foot_left, 0.1), (*apex, TIP_RADIUS), (*foot_right, 0.1), (*right[0], 0)], TIP_RADIUS / 4
+        [(*left[-1], 0), (*foot_left, FOOT_RADIUS), (*apex, TIP_RADIUS), (*foot_right, FOOT_RADIUS), (*right[0], 0)],
+        TIP_RADIUS / 4,
     )
     lip[:, 1] += TIP[1] - lip[:, 1].min()
     lip[0], lip[-1] = left[-1], right[0]
