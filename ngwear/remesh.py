@@ -10,6 +10,7 @@ from ngwear.errors import MeshError
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import tidied
+from ngwear.refinement import outgrown, wanted_size
 from ngwear.stage import Stage
 from ngwear.state import State
 
@@ -26,7 +27,7 @@ def is_due(state: State) -> bool:
     moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
     if moved > FARTHEST * accuracy.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
         return True
-    return state.stage.outgrown([p.vector for p in state.phases])
+    return outgrown(state.stage, [p.vector for p in state.phases])
 
 
 def remesh(state: State, contour: Contour | None = None) -> None:
@@ -37,7 +38,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
     """
     old = state.stage
     contour = old.body.contour if contour is None else contour
-    wanted = old.wanted_size([p.vector for p in state.phases])
+    wanted = wanted_size(old, [p.vector for p in state.phases])
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0

@@ -131,6 +131,9 @@ class Accuracy:
         Growth of the element edge with the distance from the patch [-].
     order : int
         Polynomial order of the displacement.
+    stress_error : float
+        Error indicator of the stresses over the energy norm, up to which elements outside the contacts stay
+        coarse [-].
     wear_error : float
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side.
     """
@@ -140,6 +143,7 @@ class Accuracy:
     mounting: float = 0.03
     grading: float = 0.25
     order: int = 2
+    stress_error: float = 0.05
     wear_error: float = 0.03
 
     def __post_init__(self) -> None:
@@ -148,6 +152,7 @@ class Accuracy:
         _require(self.mounting >= self.patch, "accuracy.mounting", self.mounting, "must be at least the patch size")
         _require(0 < self.grading <= 1, "accuracy.grading", self.grading, "must lie between 0 and 1")
         _require(self.order in (2,), "accuracy.order", self.order, "must be 2")
+        _require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
         _require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
 
 

@@ -1,4 +1,4 @@
-"""A scene set up on a meshed body: its terms, its problem, and the mesh that follows the contact."""
+"""A scene set up on a meshed body: its terms, their loads and its problem."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import Contact
-from ngwear.effects.contact_profile import ContactProfile
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
@@ -16,8 +15,6 @@ from ngwear.equilibrium.problem import Problem, Support
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
-from ngwear.geometry.sizing import SizeField
 from ngwear.scene import ContactSpec, Scene, Stroke
 
 Array = NDArray[np.float64]
@@ -182,66 +179,3 @@ class Stage:
         if self.scene.axisymmetric:
             found["hoop"] = np.array([0.0, -self.elasticity.hoop_force(self.problem.state.vec.FV().NumPy())])
         return found
-
-    def wanted_size(self, phases: list[Array]) -> SizeField:
-        """Element sizes for the present contacts: the patch where a followed one carries or nearly carries load.
-
-        ``phases`` are state vectors, one for each stroke of the cycle.
-        """
-        accuracy = self.scene.accuracy
-        contour = self.body.contour
-        ask = np.zeros(len(contour), dtype=bool)
-        vector = self.problem.state.vec.FV().NumPy()
-        keep = vector.copy()
-        for phase in phases:
-            vector[:] = phase
-            for spec in self.scene.followed:
-                profile = self.contacts[spec.name].profile()
-                near = (profile.nominal_pressure > 0) | (profile.gap < 2 * accuracy.patch)
-                ask |= _spanned(contour, profile, near)
-        vector[:] = keep
-        seeds = contour.points[ask]
-        return SizeField(seeds, np.full(len(seeds), accuracy.patch), accuracy.coarse, accuracy.grading)
-
-    def outgrown(self, phases: list[Array]) -> bool:
-        """Whether a followed contact has reached edges much longer than the patch's."""
-        wanted = self.wanted_size(phases)
-        if len(wanted.seeds) == 0:
-            return False
-        return bool(np.any(self.body.field(wanted.seeds) > 1.5 * self.scene.accuracy.patch))
-
-
-def _spanned(contour: Contour, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Contour points at marked nodes, and between them where a mesh edge joins two."""
-    n = len(contour)
-    ask = np.zeros(n, dtype=bool)
-    ask[np.rint(profile.t[near]).astype(int) % n] = True
-    for i, j in profile.edges[near[profile.edges].all(axis=1)]:
-        a, b = profile.t[i], profile.t[j]
-        b = b if b > a else b + n
-        ask[np.arange(np.floor(a), np.ceil(b) + 1).astype(int) % n] = True
-    return ask
-
-
-def mounting_field(scene: Scene) -> SizeField:
-    """Element sizes while the part is mounted: the followed edges fine enough for their shape."""
-    accuracy, contour = scene.accuracy, scene.contour
-    curved = np.abs(contour.turning) > 1e-3
-    mine = np.zeros(len(contour), dtype=bool)
-    for spec in scene.followed:
-        on = contour.on(spec.edges)
-        mine |= on | np.roll(on, 1)
-    seeds = contour.points[mine & curved & ~contour.corners]
-    for spec in scene.followed:
-        if len(seeds) == 0 or spec.force is not None:
-            seeds = np.vstack([seeds, _nearest_place(scene, spec)])
-    return SizeField(seeds, np.full(len(seeds), accuracy.mounting), accuracy.coarse, max(accuracy.grading, 0.3))
-
-
-def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:
-    """Where the surface comes nearest to its edges, shape (1, 2)."""
-    contour = scene.contour
-    t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])
-    places = contour.at(t)
-    gap = [float(spec.surface.gap(x, y)) for x, y in places]
-    return places[[int(np.argmin(gap))]]

@@ -18,9 +18,10 @@ from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import smoothed
+from ngwear.refinement import mounting_field, outgrown
 from ngwear.remesh import is_due, remesh
 from ngwear.scene import Scene, Stroke
-from ngwear.stage import Stage, mounting_field
+from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
 from ngwear.wear.archard import critical_distance, worn_share
 from ngwear.wear.control import JumpControl
@@ -80,7 +81,7 @@ class Stepper:
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
-        while state.stage.outgrown([p.vector for p in state.phases]) and state.ledger.remeshes < 4:
+        while outgrown(state.stage, [p.vector for p in state.phases]) and state.ledger.remeshes < 4:
             remesh(state)
             state.reports = []
             for i, stroke in enumerate(scene.program.cycle):

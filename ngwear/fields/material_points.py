@@ -38,7 +38,7 @@ class MaterialPoints:
 
     def __init__(self, body: Body, kinematics: Kinematics, *, order: int, displacement: slice, pressure: slice) -> None:
         self.body, self.kinematics = body, kinematics
-        rule = ng.IntegrationRule(ng.TRIG, 2 * order)
+        self._rule = rule = ng.IntegrationRule(ng.TRIG, 2 * order)
         self._points = body.mesh.MapToAllElements(rule, ng.VOL)
         self._rule_weights = np.array(rule.weights)
         moving, self._shapes, self._slopes = _shapes(body.mesh, order, rule)
@@ -60,7 +60,8 @@ class MaterialPoints:
         jacobian = np.asarray(ng.specialcf.JacobianMatrix(2)(self._points)).reshape(*shape, 2, 2)
         slopes = self._slopes @ np.linalg.inv(jacobian)
         weight = np.broadcast_to(np.asarray(self.kinematics.weight(self._points)).reshape(-1), (elements * points,))
-        self.volumes = self._rule_weights * np.abs(np.linalg.det(jacobian)) * weight.reshape(shape)
+        self._areas = self._rule_weights * np.abs(np.linalg.det(jacobian))
+        self.volumes = self._areas * weight.reshape(shape)
         n = self._slopes.shape[2]
         B = np.zeros((*shape, STRAINS, self.unknowns.shape[1]))
         B[:, :, 0, :n], B[:, :, 1, :n] = slopes[..., 0], slopes[..., 1]
@@ -82,6 +83,29 @@ class MaterialPoints:
         """Element vectors of a stress conjugate to the strain per reference volume; shape (elements, unknowns)."""
         weighted = (stress * self.volumes[..., None]).reshape(len(stress), -1, 1)
         return (self._transposed @ weighted)[:, :, 0]
+
+    @property
+    def centres(self) -> Array:
+        """Centres of the elements [mm], shape (elements, 2)."""
+        places = np.stack([np.asarray(c(self._points)) for c in (ng.x, ng.y)], axis=-1)
+        return places.reshape(*self.volumes.shape, 2).mean(axis=1)
+
+    @property
+    def edges(self) -> Array:
+        """Edge of the equilateral triangle of each element's area [mm], shape (elements,)."""
+        return np.sqrt(4 / np.sqrt(3) * self._areas.sum(axis=1))
+
+    def recovered(self, values: Array) -> Array:
+        """Values at the points, shape (elements, points, k), smoothed: averaged to the vertices and interpolated."""
+        vertices, shapes, _ = _shapes(self.body.mesh, 1, self._rule)
+        # Least-squares plane of each element, its values at the corners weighted by the element's area.
+        plane = np.linalg.pinv(shapes) @ values
+        area = self._areas.sum(axis=1)
+        total = np.zeros((self.body.mesh.nv, values.shape[-1]))
+        weight = np.bincount(vertices.ravel(), np.repeat(area, 3), minlength=len(total))
+        for k in range(values.shape[-1]):
+            total[:, k] = np.bincount(vertices.ravel(), (plane[..., k] * area[:, None]).ravel(), minlength=len(total))
+        return shapes @ (total / weight[:, None])[vertices]
 
     def stiffness(self, tangent: Array) -> Array:
         """Element matrices of d stress / d strain, shape (elements, points, 6, 6); shape (elements, n, n)."""

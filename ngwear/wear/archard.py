@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ Array = NDArray[np.float64]
 
 
 def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
-    """Share out the worn area of a contact's mesh nodes among the outline's points.
+    """Share out the worn area of a contact's mesh nodes among the outline's points: depth times length of each.
 
     Archard's law (J. Appl. Phys. 24 (1953) 981) per reference area, ``W = k P ds / J`` with the nominal
     pressure P, so that a stretched lip loses the right volume. The sum is kept exactly.
@@ -32,44 +33,28 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
         ``int W phi_i ds`` for each contour point [mm²].
     """
     n = len(contour)
-    share = np.zeros(n)
-    point = np.rint(profile.t).astype(int)
-    whole = (np.abs(profile.t - point) < 1e-9)[profile.edges].all(axis=1)
-    whole &= (np.diff(point[profile.edges], axis=1) % n == 1).ravel()
-    # Where mesh edges are the outline's segments, nodes are its points: sharing out again would only smooth.
-    direct = np.ones(len(profile.t), dtype=bool)
-    direct[profile.edges[~whole]] = False
-    np.add.at(share, point[direct] % n, amount[direct])
-    rest = np.where(direct, 0.0, amount)
-    return share + _shared_out(contour, profile, rest) if rest.any() else share
+    ways = np.concatenate([[0.0], np.cumsum(np.tile(contour.lengths, 2))])
 
+    def way(t: Any) -> Any:
+        return np.interp(t, np.arange(2 * n + 1), ways)
 
-def _shared_out(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
-    """Share nodal amounts as the integrals of a depth linear between the mesh nodes; the sum is kept."""
-    n = len(contour)
-    share = np.zeros(n)
-    depth = amount / profile.weight
+    at_node = amount / profile.weight
+    depth, covered = np.zeros(n), np.zeros(n, dtype=bool)
     for i, j in profile.edges:
-        if depth[i] == 0 and depth[j] == 0:
-            continue
         a, b = profile.t[i], profile.t[j]
         b = b if b > a else b + n
-        # Cut the mesh edge at the outline's points; W is linear along its length.
-        cuts = np.concatenate([[a], np.arange(math.floor(a) + 1, math.ceil(b)), [b]])
-        segment = np.floor(0.5 * (cuts[:-1] + cuts[1:])).astype(int)
-        length = np.diff(cuts) * contour.lengths[segment % n]
-        s = np.concatenate([[0.0], np.cumsum(length)]) / length.sum()
-        w = (1 - s) * depth[i] + s * depth[j]
-        middle = 0.5 * (w[:-1] + w[1:])
-        for point in (segment, segment + 1):
-            ends, inner = _hat(np.stack([cuts[:-1], cuts[1:]]), point), _hat(0.5 * (cuts[:-1] + cuts[1:]), point)
-            np.add.at(share, point % n, length / 6 * (w[:-1] * ends[0] + 4 * middle * inner + w[1:] * ends[1]))
-    return share * (amount.sum() / share.sum())
-
-
-def _hat(t: Array, point: NDArray[np.intp]) -> Array:
-    """Hat functions of contour points at contour parameters."""
-    return np.maximum(1 - np.abs(t - point), 0.0)
+        covered[np.arange(math.floor(a + 1e-9), math.ceil(b - 1e-9)) % n] = True
+        points = np.arange(math.ceil(a - 1e-9), math.floor(b + 1e-9) + 1)
+        if len(points) == 0 or at_node[i] == at_node[j] == 0:
+            continue
+        # Linear along the mesh edge. Shared by integrals instead, a dent would take its neighbours' wear and deepen.
+        part = (way(points) - way(a)) / (way(b) - way(a))
+        depth[points % n] = (1 - part) * at_node[i] + part * at_node[j]
+    half = 0.5 * contour.lengths * covered
+    share = depth * (half + np.roll(half, 1))
+    if amount.sum() > 0 and share.sum() == 0:  # a contact between two points of the outline
+        np.add.at(share, np.rint(profile.t).astype(int) % n, amount)
+    return share * (amount.sum() / share.sum()) if share.sum() > 0 else share
 
 
 def critical_distance(element: float, specific_wear_rate: float, plane_strain_modulus: float) -> float:

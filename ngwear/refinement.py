@@ -1,0 +1,118 @@
+"""Where the mesh shall be fine: in the followed contacts, and where the stresses say that it is too coarse."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.sizing import SizeField
+from ngwear.scene import ContactSpec, Scene
+from ngwear.stage import Stage
+
+Array = NDArray[np.float64]
+
+FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
+CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
+
+
+def wanted_size(stage: Stage, phases: list[Array]) -> SizeField:
+    """Element sizes for the present states, one for each stroke of the cycle.
+
+    The patch's where a followed contact carries or nearly carries load; elsewhere what brings the indicator of an
+    element to its share of ``Accuracy.stress_error``.
+    """
+    accuracy = stage.scene.accuracy
+    asked = _contact_places(stage, phases)
+    contacts = SizeField(asked, np.full(len(asked), accuracy.patch), accuracy.coarse, accuracy.grading)
+    places, sizes = _stress_sizes(stage, phases)
+    heard = sizes < FINER * contacts(places)
+    return SizeField(
+        np.vstack([asked, places[heard]]),
+        np.concatenate([contacts.sizes, sizes[heard]]),
+        accuracy.coarse,
+        accuracy.grading,
+    )
+
+
+def outgrown(stage: Stage, phases: list[Array]) -> bool:
+    """Whether a followed contact, or a stress, has reached elements that are much too coarse for it."""
+    wanted, body = wanted_size(stage, phases), stage.body
+    if len(wanted.seeds) == 0:
+        return False
+    slack = np.where(wanted.sizes > stage.scene.accuracy.patch, STRESS_SLACK, CONTACT_SLACK)
+    return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
+
+
+def _contact_places(stage: Stage, phases: list[Array]) -> Array:
+    """Contour points where a followed contact carries or nearly carries load, shape (k, 2)."""
+    contour = stage.body.contour
+    ask = np.zeros(len(contour), dtype=bool)
+    vector = stage.problem.state.vec.FV().NumPy()
+    keep = vector.copy()
+    for phase in phases:
+        vector[:] = phase
+        for spec in stage.scene.followed:
+            profile = stage.contacts[spec.name].profile()
+            near = (profile.nominal_pressure > 0) | (profile.gap < 2 * stage.scene.accuracy.patch)
+            ask |= _spanned(contour, profile, near)
+    vector[:] = keep
+    return contour.points[ask]
+
+
+def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
+    """Centres of the elements, shape (m, 2), and the element edge that their stress error asks for, shape (m,).
+
+    The stress is compared with its continuous recovery at the nodes (Zienkiewicz & Zhu, Int. J. Numer. Methods Eng.
+    24 (1987) 337): eta^2 = int |P - P*|^2 / 2G dV. With N elements of equal error each may have
+    eta = stress_error sqrt(energy / N); the error falls with the square of the element edge.
+    """
+    points, elasticity = stage.problem.points, stage.elasticity
+    points.follow()
+    edge = np.full(len(points.volumes), np.inf)
+    for phase in phases:
+        strain = points.strain(phase)
+        stress, _ = elasticity.response(strain, tangent=False)
+        off = stress[..., :5] - points.recovered(stress[..., :5])
+        error = np.sqrt((points.volumes * (off**2).sum(axis=-1)).sum(axis=1) / (2 * stage.scene.material.shear_modulus))
+        energy = (points.volumes * elasticity.energy(strain)).sum()
+        share = stage.scene.accuracy.stress_error * np.sqrt(energy / len(edge))
+        edge = np.minimum(edge, points.edges * np.sqrt(share / np.maximum(error, 1e-12 * share)))
+    return points.centres, np.maximum(edge, stage.scene.accuracy.patch)
+
+
+def _spanned(contour: Contour, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Contour points at marked nodes, and between them where a mesh edge joins two."""
+    n = len(contour)
+    ask = np.zeros(n, dtype=bool)
+    ask[np.rint(profile.t[near]).astype(int) % n] = True
+    for i, j in profile.edges[near[profile.edges].all(axis=1)]:
+        a, b = profile.t[i], profile.t[j]
+        b = b if b > a else b + n
+        ask[np.arange(np.floor(a), np.ceil(b) + 1).astype(int) % n] = True
+    return ask
+
+
+def mounting_field(scene: Scene) -> SizeField:
+    """Element sizes while the part is mounted: the followed edges fine enough for their shape."""
+    accuracy, contour = scene.accuracy, scene.contour
+    curved = np.abs(contour.turning) > 1e-3
+    mine = np.zeros(len(contour), dtype=bool)
+    for spec in scene.followed:
+        on = contour.on(spec.edges)
+        mine |= on | np.roll(on, 1)
+    seeds = contour.points[mine & curved & ~contour.corners]
+    for spec in scene.followed:
+        if len(seeds) == 0 or spec.force is not None:
+            seeds = np.vstack([seeds, _nearest_place(scene, spec)])
+    return SizeField(seeds, np.full(len(seeds), accuracy.mounting), accuracy.coarse, max(accuracy.grading, 0.3))
+
+
+def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:
+    """Where the surface comes nearest to its edges, shape (1, 2)."""
+    contour = scene.contour
+    t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])
+    places = contour.at(t)
+    gap = [float(spec.surface.gap(x, y)) for x, y in places]
+    return places[[int(np.argmin(gap))]]
