@@ -106,7 +106,7 @@ def mounting_field(scene: Scene) -> SizeField:
     for spec in scene.followed:
         if len(seeds) == 0 or spec.force is not None:
             seeds = np.vstack([seeds, _nearest_place(scene, spec)])
-    return SizeField(seeds, np.full(len(seeds), accuracy.mounting), accuracy.coarse, max(accuracy.grading, 0.3))
+    return SizeField(seeds, np.full(len(seeds), accuracy.mounting), accuracy.coarse, max(accuracy.grading, 0.3), 0.5)
 
 
 def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:

@@ -7,6 +7,8 @@ compares both), and assembly is half of a run.
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
@@ -97,15 +99,20 @@ class MaterialPoints:
 
     def recovered(self, values: Array) -> Array:
         """Values at the points, shape (elements, points, k), smoothed: averaged to the vertices and interpolated."""
-        vertices, shapes, _ = _shapes(self.body.mesh, 1, self._rule)
-        # Least-squares plane of each element, its values at the corners weighted by the element's area.
-        plane = np.linalg.pinv(shapes) @ values
+        vertices, shapes, fit = self._corners
+        plane = fit @ values
         area = self._areas.sum(axis=1)
         total = np.zeros((self.body.mesh.nv, values.shape[-1]))
         weight = np.bincount(vertices.ravel(), np.repeat(area, 3), minlength=len(total))
         for k in range(values.shape[-1]):
             total[:, k] = np.bincount(vertices.ravel(), (plane[..., k] * area[:, None]).ravel(), minlength=len(total))
         return shapes @ (total / weight[:, None])[vertices]
+
+    @cached_property
+    def _corners(self) -> tuple[Index, Array, Array]:
+        """Vertices of the elements, the shape functions of a plane, and the least-squares plane through the points."""
+        vertices, shapes, _ = _shapes(self.body.mesh, 1, self._rule)
+        return vertices, shapes, np.linalg.pinv(shapes)
 
     def stiffness(self, tangent: Array) -> Array:
         """Element matrices of d stress / d strain, shape (elements, points, 6, 6); shape (elements, n, n)."""

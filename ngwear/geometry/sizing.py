@@ -24,12 +24,15 @@ class SizeField:
         Element edge far away [mm].
     grading : float
         Growth of the edge with distance [-].
+    turn : float
+        Largest turn of the outline between two mesh nodes where the field is finest [rad].
     """
 
     seeds: Array
     sizes: Array
     coarse: float
     grading: float = 0.25
+    turn: float = 0.26
 
     def __call__(self, points: Array) -> Array:
         """Element edge wanted at points of shape (n, 2); shape (n,)."""
@@ -74,7 +77,7 @@ def smoothed(contour: Contour, edges: tuple[str, ...], longest: float) -> Contou
 def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
     """Choose the contour points that become mesh nodes, about h apart.
 
-    Between two nodes the outline turns by at most 0.5 rad, in the patch by a quarter of its radius. Corners
+    Between two nodes the outline turns by at most 0.5 rad, where the field is finest by ``field.turn``. Corners
     and changes of name are always nodes.
     """
     n = len(contour)
@@ -83,7 +86,7 @@ def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
     fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(n)])
     start = int(np.argmax(fixed))
     in_patch = h <= 1.01 * field.sizes.min() if len(field.sizes) else np.zeros(n, dtype=bool)
-    max_turn = np.where(in_patch, 0.26, 0.5)
+    max_turn = np.where(in_patch, field.turn, 0.5)
     chosen = [start]
     run_length = run_turn = 0.0
     for step in range(1, n):
