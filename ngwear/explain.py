@@ -18,7 +18,8 @@ def explain(scene: Scene) -> dict[str, Any]:
     """
     from ngwear.equilibrium.linear import has_pardiso
     from ngwear.geometry.body import Body
-    from ngwear.stage import Stage, mounting_field
+    from ngwear.refinement import mounting_field
+    from ngwear.stage import Stage
 
     stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
     problem, material = stage.problem, scene.material

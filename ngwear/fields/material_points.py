@@ -75,7 +75,8 @@ class MaterialPoints:
         B[:, :, 5, 2 * n :] = self._stress_shapes
         self._B = B
         self._flat = B.reshape(elements, points * STRAINS, -1)
-        self._transposed = np.ascontiguousarray(self._flat.swapaxes(1, 2))
+        weighted = (B * self.volumes[..., None, None]).reshape(self._flat.shape)
+        self._transposed = np.ascontiguousarray(weighted.swapaxes(1, 2))  # times the volumes
 
     def strain(self, vector: Array) -> Array:
         """Strains of a vector of unknowns, shape (elements, points, 6)."""
@@ -83,8 +84,7 @@ class MaterialPoints:
 
     def forces(self, stress: Array) -> Array:
         """Element vectors of a stress conjugate to the strain per reference volume; shape (elements, unknowns)."""
-        weighted = (stress * self.volumes[..., None]).reshape(len(stress), -1, 1)
-        return (self._transposed @ weighted)[:, :, 0]
+        return (self._transposed @ stress.reshape(len(stress), -1, 1))[:, :, 0]
 
     @property
     def centres(self) -> Array:
@@ -116,8 +116,7 @@ class MaterialPoints:
 
     def stiffness(self, tangent: Array) -> Array:
         """Element matrices of d stress / d strain, shape (elements, points, 6, 6); shape (elements, n, n)."""
-        weighted = (tangent * self.volumes[..., None, None]) @ self._B
-        return self._transposed @ weighted.reshape(self._flat.shape)
+        return self._transposed @ (tangent @ self._B).reshape(self._flat.shape)
 
 
 def _shapes(mesh: ng.Mesh, order: int, rule: ng.IntegrationRule) -> tuple[Index, Array, Array]:

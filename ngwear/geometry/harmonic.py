@@ -5,8 +5,6 @@ from __future__ import annotations
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
-from scipy.sparse.linalg import splu
 
 Array = NDArray[np.float64]
 
@@ -25,6 +23,9 @@ class HarmonicFill:
     """
 
     def __init__(self, matrix: ng.BaseMatrix, free: NDArray[np.bool_]) -> None:
+        from scipy.sparse import csr_array
+        from scipy.sparse.linalg import splu  # slow to load, and only bodies that move need it
+
         self._stiffness = csr_array(tuple(np.array(part) for part in matrix.CSR()))
         self._free = np.flatnonzero(free)
         inner = self._stiffness[self._free][:, self._free].tocsc()

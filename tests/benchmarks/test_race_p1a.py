@@ -66,7 +66,7 @@ def surroundings(cache: str) -> dict[str, str]:
 
 def lap(runner: Runner, environment: dict[str, str]) -> Lap:
     """Run a program once as a process of its own."""
-    command = [sys.executable, str(HERE / runner.command[0]), *runner.command[1:]]
+    command = [sys.executable, str(HERE / "with_memory.py"), str(HERE / runner.command[0]), *runner.command[1:]]
     with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
         process = subprocess.Popen(command, stdout=out, stderr=err, env=environment)
         _, status, usage = os.wait4(process.pid, 0)
@@ -76,10 +76,9 @@ def lap(runner: Runner, environment: dict[str, str]) -> Lap:
         assert process.returncode == 0, f"{runner.name} failed:\n{err.read()}"
         words = out.read().split()
     said = dict(zip(words[::2], words[1::2], strict=True))
-    kilobytes = usage.ru_maxrss / (1024 if sys.platform == "darwin" else 1)
     return Lap(
         usage.ru_utime + usage.ru_stime,
-        kilobytes / 1024,
+        int(said["memory"]) / 1024,
         int(said["dofs"]),
         int(said["iterations"]),
         float(said["force"]),
