@@ -76,9 +76,9 @@ def peak_over_mean(snapshot: Snapshot) -> float:
 
 
 def beside_the_peak(snapshots: list[Snapshot]) -> list[float]:
-    """Pressure of each snapshot three quarters of the tip's radius (0.015 mm) left of the first one's peak [MPa]."""
+    """Pressure of each snapshot one tip radius (0.02 mm) left of the first one's peak [MPa]."""
     x, p = _outline_pressure(snapshots[0])
-    place = x[np.argmax(p)] - 0.015
+    place = x[np.argmax(p)] - 0.02
     return [float(np.interp(place, *_outline_pressure(s))) for s in snapshots]
 
 
@@ -147,7 +147,7 @@ def run_case() -> tuple[list[Check], Result]:
             )
             for s in result.recorder.snapshots[-2:]
         ),
-        check("pressure left of the lip, highest kept over first [-]", max(beside) / beside[0], 1.0, bound="above"),
+        check("pressure left of the lip, highest kept over first [-]", max(beside) / beside[0], 1.05, bound="above"),
         check("pressure left of the lip, last over highest kept [-]", beside[-1] / max(beside), 1.0, bound="below"),
         check("area removed against the law [-]", errors["area against the law [-]"], 0.0, 1e-3),
         check("area changed by a remesh [-]", errors["area in a remesh [-]"], 0.0, 1e-6),
