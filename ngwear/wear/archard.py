@@ -30,7 +30,7 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
     Returns
     -------
     array, shape (n,)
-        ``int W phi_i ds`` for each contour point [mm²].
+        Depth W at each contour point times half the length of its two segments [mm²].
     """
     n = len(contour)
     ways = np.concatenate([[0.0], np.cumsum(np.tile(contour.lengths, 2))])

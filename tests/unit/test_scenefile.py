@@ -104,6 +104,13 @@ BAD = {
     "patch": ("patch = 0.1", "patch = 0", "accuracy.patch", 0.0, "greater than 0 mm"),
     "coarse": ("coarse = 0.5", "coarse = 0.05", "accuracy.coarse", 0.05, "at least the patch size"),
     "grading": ("patch = 0.1", "patch = 0.1\ngrading = 2", "accuracy.grading", 2.0, "between 0 and 1"),
+    "stress error": (
+        "patch = 0.1",
+        "patch = 0.1\nstress_error = 0",
+        "accuracy.stress_error",
+        0.0,
+        "between 0 and 1",
+    ),
     "scheme": ('step = "each"', 'scheme = "magic"', "wear.scheme", "magic", "implicit.*explicit"),
     "step": ('step = "each"', 'step = "all"', "wear.step", "all", "jump.*each"),
     "save stroke": ("[wear]", "[save]\nstrokes = [0]\n[wear]", "save.strokes", (0,), "above 0"),
