@@ -42,9 +42,15 @@ class Contact(Term):
     surface : RigidSurface
     force_controlled : bool
     modulus : float
-        Shear modulus G of the body [MPa]. It sets the scales of the method, not of the solution:
-        c = 13 G / mm, and a compliance of 1e-7 mm / G (1e-7 mm of closure at P = G) that keeps the
-        pivots of the factorisation away from zero.
+        Shear modulus G of the body [MPa]. With the length h of a mesh edge it sets the scales of the method,
+        not of the solution: ``1/c = softness h / (2 G) + kappa``, and a compliance of 1e-5 h / G (a closure of
+        1e-5 h at P = G) that keeps the pivots of the factorisation away from zero.
+
+    Attributes
+    ----------
+    softness : ng.Parameter
+        Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
+        it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
     """
 
     def __init__(
@@ -60,8 +66,7 @@ class Contact(Term):
         self.name, self.edges, self.surface = name, tuple(edges), surface
         self.force_controlled = force_controlled
         self.modulus = modulus
-        self.augmentation = 13.0 * modulus
-        self.floor = 1e-7 / modulus
+        self.softness = ng.Parameter(1.0)
         self.compliance = ng.Parameter(0.0)
         self.load = ng.Parameter(0.0)
         self._length = ng.Parameter(1.0)  # of the whole outline as it is meshed and worn [mm]
@@ -104,9 +109,11 @@ class Contact(Term):
         self._body, self._region = unknowns.body, region
         self._start = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         stretch = kinematics.area_stretch(self._start, ng.Grad(self._start))
-        p, c = unknowns.trial[self.pressure_name], self.augmentation
+        give = self._edge_lengths(unknowns.body) / self.modulus
+        self._augmentation = c = 1 / (0.5 * self.softness * give + self.compliance)
+        p = unknowns.trial[self.pressure_name]
         pushed = p - c * self.gap(unknowns.trial)
-        closure = 1 + c * (self.floor + self.compliance / stretch)
+        closure = 1 + c * (1e-5 * give + self.compliance / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight
         form += ng.Variation(energy.Compile() * ng.ds(definedon=region, bonus_intorder=2))
@@ -119,6 +126,16 @@ class Contact(Term):
         self._state, self._kinematics = unknowns.state, kinematics
         self._lay_samples(unknowns.body, region)
         self._measure()
+
+    def _edge_lengths(self, body: Body) -> ng.GridFunction:
+        """Length of each mesh edge as it was made: constant on it, so that P adds up to what the gap asks for."""
+        line = body.outline
+        ends = body.base.at(line.t.ravel()).reshape(-1, 2, 2)
+        space = ng.SurfaceL2(body.mesh, order=0)
+        field = ng.GridFunction(space)
+        dofs = [space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in line.element]
+        field.vec.FV().NumPy()[dofs] = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        return field
 
     def _lay_samples(self, body: Body, region: ng.Region) -> None:
         """Mapped points at both ends of each mesh edge in contact, in the order of the outline."""
@@ -195,6 +212,20 @@ class Contact(Term):
     def prepare(self) -> None:
         self._start.vec.data = self._state[DISPLACEMENT].vec
         self._measure()
+        if self.force_controlled:
+            self._follow()
+
+    def _follow(self) -> None:
+        """Move a surface under force that has lost touch (the part has worn) after the points that carried it."""
+        gap, pressure = self._sample(self.gap(self._state)), self.end_pressures()
+        carried = np.maximum(pressure, 0.0)
+        still = np.maximum(pressure - self._sample(self._augmentation) * gap, 0.0)
+        if not carried.any() or still.sum() > 0.1 * carried.sum():
+            return
+        ax, ay = self.surface.approach
+        nx, ny = (self._sample(ng.CF(n)) for n in self.surface.normal(*self.place(self._state)))
+        closing = nx * ax + ny * ay  # of the gap per travel
+        self._state[self.travel_name].vec[0] += (carried * gap).sum() / (carried * closing).sum()
 
     def _measure(self) -> None:
         """Length of the outline as the mesh has it now, curved and worn."""

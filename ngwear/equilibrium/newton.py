@@ -26,6 +26,8 @@ class Outcome(enum.Enum):
     BAD_START = "the first guess has folded elements: start from a state nearer to the solution"
 
 
+SOFTNESS = (1.0, 10.0)  # of the contacts, one after the other
+SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element
 NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept
 PATIENCE = 8  # iterations within which the smallest correction must halve
@@ -74,17 +76,28 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
     """Bring the problem's state to equilibrium under its present loads.
 
     On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
-    somewhere) are refused and the correction is halved, a few times.
+    somewhere) are refused and the correction is halved, a few times. A solve that gets nowhere is tried
+    once more with softer contacts (see ``Contact``).
     """
     options = options or NewtonOptions()
     for term in problem.terms:
         term.prepare()
     start = problem.state.vec.CreateVector()
     start.data = problem.state.vec
-    with problem.threads():
-        report = _iterate(problem, options)
-    if not report.converged:
+    contacts = [term for term in problem.terms if isinstance(term, Contact)]
+    wasted = 0
+    for softness in SOFTNESS if contacts else SOFTNESS[:1]:
+        for contact in contacts:
+            contact.softness.Set(softness)
+        with problem.threads():
+            report = _iterate(problem, options)
+        report.iterations += wasted
+        wasted = report.iterations
+        if report.converged:
+            break
         problem.state.vec.data = start
+        if report.outcome not in SOFTER_MAY_HELP:
+            break
     return report
 
 

@@ -187,7 +187,7 @@ def test_too_few_iterations_are_reported_and_the_state_put_back(rectangle):
     problem.set_loads({"lid approach [mm]": 0.2})
     report = solve(problem, NewtonOptions(max_iterations=2))
     assert report.outcome is Outcome.TOO_MANY_ITERATIONS
-    assert report.iterations == 2
+    assert report.iterations == 2 * 2  # two, and two more with softer contacts
     assert "smaller load steps" in str(report)
     assert np.abs(problem.state.vec.FV().NumPy()).max() == 0
 
