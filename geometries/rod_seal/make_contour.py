@@ -15,13 +15,13 @@ import numpy as np
 
 TIP = (3.15, 10.2)  # lip tip: axial position and radius [mm]
 TIP_RADIUS = 0.02
-FLANKS = (50.0, 48.0)  # degrees from the rod axis, air side and sealed side
+FLANKS = (45.0, 50.0)  # degrees from the rod axis, air side and sealed side
 FOOT_RADIUS = 0.02  # where the flanks leave the section
 PITCH = 0.33
-LEFT = 0.70  # where the first left ridge begins
+LEFT = 0.69  # where the first left ridge begins
 LEFT_BASE = (10.475, 10.302)  # radius of the ridge roots at the first and after the last left ridge
 LEFT_HEIGHT = 0.10
-RIGHT = 3.32
+RIGHT = 3.315
 RIGHT_BASE = (10.312, 10.58)
 RIGHT_HEIGHT = 0.10
 SPACING = 0.0095  # ridges

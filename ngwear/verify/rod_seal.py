@@ -142,7 +142,7 @@ def run_case() -> tuple[list[Check], Result]:
             check(
                 f"peak over mean pressure in the middle of the lip's contact, last {s.kind} stroke [-]",
                 peak_over_mean(s),
-                1.25,
+                1.2,
                 bound="below",
             )
             for s in result.recorder.snapshots[-2:]
