@@ -3,5 +3,7 @@
 from ngwear.materials.base import Hyperelastic
 from ngwear.materials.mooney_rivlin import MooneyRivlin
 from ngwear.materials.neo_hooke import NeoHooke
+from ngwear.materials.prony import Folding, PronySeries
+from ngwear.materials.shift import WLF, Arrhenius
 
-__all__ = ["Hyperelastic", "MooneyRivlin", "NeoHooke"]
+__all__ = ["WLF", "Arrhenius", "Folding", "Hyperelastic", "MooneyRivlin", "NeoHooke", "PronySeries"]

@@ -1,0 +1,87 @@
+"""Time-temperature superposition: how much slower rubber relaxes when it is colder."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ngwear.errors import SceneError
+
+GAS_CONSTANT = 8.31446261815324  # J/(mol K)
+
+
+@dataclass(frozen=True)
+class WLF:
+    """``log10 a_T = -C1 (T - T_r) / (C2 + T - T_r)`` (Williams, Landel & Ferry, J. Am. Chem. Soc. 77 (1955) 3701).
+
+    Good from the glass transition to about 100 K above it.
+
+    Parameters
+    ----------
+    c1 : float
+        [-], > 0.
+    c2 : float
+        [K], > 0.
+    reference : float
+        T_r [K].
+    """
+
+    c1: float
+    c2: float
+    reference: float
+
+    def __post_init__(self) -> None:
+        for name, value in (("c1", self.c1), ("c2", self.c2), ("reference", self.reference)):
+            if not 0 < value < math.inf:
+                raise SceneError(f"material.shift.{name}", value, "must be finite and greater than 0")
+
+    @classmethod
+    def above_glass(cls, glass: float, reference: float) -> WLF:
+        """Universal constants 17.44 and 51.6 K at the glass temperature, moved to another reference [K]."""
+        return cls(17.44, 51.6, glass).moved(reference)
+
+    def moved(self, reference: float) -> WLF:
+        """Same curve about another reference temperature [K]."""
+        distance = self._above_the_pole(reference)
+        return WLF(self.c1 * self.c2 / distance, distance, reference)
+
+    def factor(self, temperature: float) -> float:
+        """``a_T = tau(T) / tau(T_r)``, above 1 when colder; temperature in K."""
+        return 10 ** (-self.c1 * (temperature - self.reference) / self._above_the_pole(temperature))
+
+    def _above_the_pole(self, temperature: float) -> float:
+        distance = self.c2 + temperature - self.reference
+        if not distance > 0:
+            raise SceneError(
+                "temperature",
+                temperature,
+                f"at {self.reference - self.c2:.4g} K and below the WLF law has no meaning (glass); give it in K",
+            )
+        return distance
+
+
+@dataclass(frozen=True)
+class Arrhenius:
+    """``ln a_T = E_a / R (1/T - 1/T_r)``: for temperatures far above the glass transition.
+
+    Parameters
+    ----------
+    activation_energy : float
+        E_a [J/mol], > 0.
+    reference : float
+        T_r [K].
+    """
+
+    activation_energy: float
+    reference: float
+
+    def __post_init__(self) -> None:
+        for name, value in (("activation_energy", self.activation_energy), ("reference", self.reference)):
+            if not 0 < value < math.inf:
+                raise SceneError(f"material.shift.{name}", value, "must be finite and greater than 0")
+
+    def factor(self, temperature: float) -> float:
+        """``a_T = tau(T) / tau(T_r)``, above 1 when colder; temperature in K."""
+        if not temperature > 0:
+            raise SceneError("temperature", temperature, "must be greater than 0 K")
+        return math.exp(self.activation_energy / GAS_CONSTANT * (1 / temperature - 1 / self.reference))
