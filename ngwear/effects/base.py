@@ -70,6 +70,9 @@ class Term(abc.ABC):
         """After a solve, update what was fixed in it; True asks for another solve."""
         return False
 
+    def set_time_step(self, step: float) -> None:  # noqa: B027 - most terms know no time
+        """Length of the step that is solved next [s]; infinity for an equilibrium that is left for ever."""
+
 
 class VolumeTerm(Term):
     """A term of the section's inside: a stress at each material point."""
@@ -84,3 +87,6 @@ class VolumeTerm(Term):
         Shapes (..., 6) and (..., 6, 6), per reference volume; not a number where the strain is not admissible
         (J <= 0).
         """
+
+    def commit(self, strain: Array) -> None:
+        """Move the memory to the end of a step that is accepted, at its strain."""

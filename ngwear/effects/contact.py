@@ -43,8 +43,8 @@ class Contact(Term):
     force_controlled : bool
     modulus : float
         Shear modulus G of the body [MPa]. With the length h of a mesh edge it sets the scales of the method,
-        not of the solution: ``1/c = softness h / (2 G) + kappa``, and a compliance of 1e-5 h / G (a closure of
-        1e-5 h at P = G) that keeps the pivots of the factorisation away from zero.
+        not of the solution: ``1/c = softness h / (2 G) + kappa``, and a compliance of 1e-6 h / G (a closure of
+        1e-6 h at P = G) that keeps the pivots of the factorisation away from zero.
 
     Attributes
     ----------
@@ -113,7 +113,7 @@ class Contact(Term):
         self._augmentation = c = 1 / (0.5 * self.softness * give + self.compliance)
         p = unknowns.trial[self.pressure_name]
         pushed = p - c * self.gap(unknowns.trial)
-        closure = 1 + c * (1e-5 * give + self.compliance / stretch)
+        closure = 1 + c * (1e-6 * give + self.compliance / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight
         form += ng.Variation(energy.Compile() * ng.ds(definedon=region, bonus_intorder=2))

@@ -143,6 +143,18 @@ class Problem:
         """The loads as they are."""
         return {name: parameter.Get() for name, parameter in self.parameters.items()}
 
+    def set_time_step(self, step: float) -> None:
+        """Length of the step that is solved next [s], for the terms that know time."""
+        for term in self.terms:
+            term.set_time_step(step)
+
+    def commit(self) -> None:
+        """Accept the present state: memory moves to it."""
+        if self.points is not None:
+            strain = self.points.strain(self.state.vec.FV().NumPy())
+            for term in self._volume:
+                term.commit(strain)
+
     def threads(self) -> AbstractContextManager[Any]:
         """Context of a solve: all cores if the problem is large enough to gain by them, else one."""
         return ng.TaskManager() if self.space.ndof >= THREADED_FROM else nullcontext()

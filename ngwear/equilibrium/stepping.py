@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -73,12 +74,13 @@ def advance(
     target: Loads,
     options: StepOptions | None = None,
     *,
+    duration: float = math.inf,
     on_step: Callable[[float, Report], None] | None = None,
 ) -> Work:
     """Walk the problem from its present equilibrium and loads to ``target``.
 
-    Loads vary linearly along the way. ``on_step`` is called with the fraction reached and the report of
-    its solve.
+    Loads vary linearly along the way, which takes ``duration`` seconds; every accepted step is committed to
+    memory. ``on_step`` is called with the fraction reached and the report of its solve.
 
     Raises
     ------
@@ -102,6 +104,7 @@ def advance(
             step = 1.0 - done
         goal = done + step
         problem.set_loads({name: start[name] + goal * (target[name] - start[name]) for name in target})
+        problem.set_time_step(step * duration)
         if have_rate:
             vector.data = last + step * rate
         # On the way out of a guess the front stays: moving it would undo the balance walked from.
@@ -121,6 +124,7 @@ def advance(
                     f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}", report
                 )
             continue
+        problem.commit()
         rate.data = (1 / step) * (vector - last)
         last.data = vector
         have_rate = True

@@ -16,6 +16,7 @@ CASES: dict[str, str] = {
     "tangents": "ngwear.verify.tangents",
     "convergence": "ngwear.verify.convergence",
     "locking": "ngwear.verify.locking",
+    "memory": "ngwear.verify.memory",
     "hertz": "ngwear.verify.hertz",
     "p1a": "ngwear.verify.p1a",
     "ring": "ngwear.verify.ring",

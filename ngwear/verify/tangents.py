@@ -21,10 +21,11 @@ from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
+from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.materials import MooneyRivlin, NeoHooke
+from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed, rectangle
@@ -35,6 +36,7 @@ MATERIALS = {
     "neo-Hooke": NeoHooke(shear=1.5, bulk_modulus=1000.0),
     "Mooney-Rivlin": MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
 }
+ARMS = PronySeries((3.0, 2.0), (0.1, 1.0))
 KINEMATICS = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
 SURFACES = {
     "plane": Plane(point=(WIDTH / 2, TOP), normal_vector=(0.3, -1.0)),
@@ -105,6 +107,7 @@ def _contact(surface: RigidSurface, forced: bool, wear: float) -> Contact:
 def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
     for (kin, kinematics), (name, material) in itertools.product(KINEMATICS.items(), MATERIALS.items()):
         yield f"elasticity, {name}, {kin}", kinematics, [Elasticity(material)]
+        yield f"viscosity, {name}, {kin}", kinematics, [Elasticity(material), Viscosity(material, ARMS)]
     for (kin, kinematics), (name, surface) in itertools.product(KINEMATICS.items(), SURFACES.items()):
         for forced, wear in itertools.product((False, True), (0.0, 0.02)):
             how = f"{'force' if forced else 'displacement'}{' and wear' if wear else ''}"
@@ -135,6 +138,9 @@ def run() -> list[Check]:
             term.prepare()
             if isinstance(term, FluidPressure):
                 term.wetted.Set(0.5 + 0.5 * ng.sin(ng.x + ng.y))
+            if isinstance(term, Viscosity):
+                term.relaxed += rng.uniform(-1, 1, term.relaxed.shape)
+                term.set_time_step(0.1)
         error = tangent_error(problem, rng)
         checks.append(Check("tangents", f"{label} [-]", error, 0.0, TOLERANCE, clock.seconds))
     return checks
