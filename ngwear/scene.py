@@ -144,7 +144,7 @@ class Accuracy:
     grading: float = 0.25
     order: int = 2
     stress_error: float = 0.05
-    wear_error: float = 0.06
+    wear_error: float = 0.08
 
     def __post_init__(self) -> None:
         _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")

@@ -95,7 +95,7 @@ class Stepper:
         """Bring the surfaces to their places, without fluid pressure."""
         problem = stage.problem
         loads = {k: v for k, v in stage.stroke_loads(self.scene.program.cycle[0]).items() if "fluid" not in k}
-        options = StepOptions(first=1 / 32)
+        options = StepOptions(first=1 / 64)
 
         def report(fraction: float, _: Any) -> None:
             self.on_mount(0.7 * fraction)

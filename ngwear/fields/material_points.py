@@ -87,10 +87,15 @@ class MaterialPoints:
         return (self._transposed @ stress.reshape(len(stress), -1, 1))[:, :, 0]
 
     @property
+    def places(self) -> Array:
+        """Reference coordinates of the points [mm], shape (elements, points, 2)."""
+        places = np.stack([np.asarray(c(self._points)) for c in (ng.x, ng.y)], axis=-1)
+        return places.reshape(*self.volumes.shape, 2)
+
+    @property
     def centres(self) -> Array:
         """Centres of the elements [mm], shape (elements, 2)."""
-        places = np.stack([np.asarray(c(self._points)) for c in (ng.x, ng.y)], axis=-1)
-        return places.reshape(*self.volumes.shape, 2).mean(axis=1)
+        return self.places.mean(axis=1)
 
     @property
     def edges(self) -> Array:

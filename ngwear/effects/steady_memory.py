@@ -1,0 +1,95 @@
+"""Memory in steady sliding: what relaxes while the material flows past the slider."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
+from ngwear.effects.memory import Memory, step_factors
+from ngwear.errors import SceneError
+from ngwear.fields.transfer import PointSearch
+from ngwear.materials import Hyperelastic, PronySeries
+
+
+class SteadyMemory(Memory):
+    """Arms of a generalised Maxwell model in the frame of a slider that moves along x at constant speed.
+
+    What the reference material carries flows through the frame at -V along rows of constant y, so that time along
+    a row is ``t = -x / V`` and the arms are known at once:
+
+        Q_i = gamma_i (S - R_i S),   (R_i S)(x) = int_0^inf exp(-s / tau_i) S(x + V s) ds / tau_i.
+
+    R_i is integrated exactly for an S that is linear between the columns of a rectangular grid, one sweep an arm.
+    A solve takes ``share`` of the arms' stiffness implicitly and the rest as a known tensor,
+    ``h = (sum gamma_i - share) S - sum gamma_i R_i S``; ``equilibrium.steady`` repeats until h agrees with S.
+
+    Material enters relaxed and undeformed: the grid must reach upstream to where nothing happens yet.
+
+    Parameters
+    ----------
+    material : Hyperelastic
+    series : PronySeries
+    columns, rows : array
+        Coordinates x and y of the grid, rising [mm].
+    """
+
+    def __init__(self, material: Hyperelastic, series: PronySeries, *, columns: Array, rows: Array) -> None:
+        super().__init__(material, series)
+        self.columns, self.rows = np.asarray(columns, dtype=float), np.asarray(rows, dtype=float)
+        self._speed = 0.0
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        self.lay(unknowns)
+        self._unknowns = unknowns
+        places = np.stack([c.ravel() for c in np.meshgrid(self.columns, self.rows)], axis=1)  # x runs fastest
+        self._grid = PointSearch(unknowns.body.mesh, unknowns.body.deformation, places)
+        points = unknowns.points.places
+        self._column, self._across = _between(self.columns, points[..., 0])
+        self._row, self._up = _between(self.rows, points[..., 1])
+
+    def set_speed(self, speed: float, wavelength: float) -> None:
+        """Sliding speed [mm/s], and the length 2 pi / k of the contact's pressure that sets the implicit share."""
+        if not speed > 0:
+            raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest solve the equilibrium")
+        self._speed = speed
+        gap = np.diff(self.columns) / speed
+        self._factors = [step_factors(gap, time) for time in self.times]
+        x = 2 * np.pi * speed / wavelength * self.times
+        self.share = float((self.ratios * x * x / (1 + x * x)).sum())
+
+    def relaxed(self) -> Array:
+        """``sum gamma_i R_i S`` on the grid in the present state, shape (rows, columns, 4) [MPa]."""
+        stress = self.second_piola(self._grid_strain()).reshape(len(self.rows), len(self.columns), 4)
+        total = np.zeros_like(stress)
+        for ratio, (decay, mean) in zip(self.ratios, self._factors, strict=True):
+            now = stress[:, -1].copy()  # the first column upstream
+            total[:, -1] += ratio * now
+            for i in range(len(self.columns) - 2, -1, -1):
+                e, a = decay[i], mean[i]
+                now = e * now + (1 - a) * stress[:, i] + (a - e) * stress[:, i + 1]
+                total[:, i] += ratio * now
+        return total
+
+    def follow(self, strain: Array) -> Array:
+        """The history h that belongs to the present state, whose strains at the points are given [MPa]."""
+        grid, column, row = self.relaxed(), self._column, self._row
+        across, up = self._across[..., None], self._up[..., None]
+        low = (1 - across) * grid[row, column] + across * grid[row, column + 1]
+        high = (1 - across) * grid[row + 1, column] + across * grid[row + 1, column + 1]
+        instant = (float(self.ratios.sum()) - self.share) * self.second_piola(strain)
+        return instant - (1 - up) * low - up * high
+
+    def _grid_strain(self) -> Array:
+        """Strains at the grid's points, shape (n, 6); the volumetric stress is left out."""
+        u = self._unknowns.state[DISPLACEMENT]
+        gradient = self._grid(ng.Grad(u))
+        hoop = self._grid(self._unknowns.kinematics.hoop_stretch(u))
+        return np.column_stack([gradient, hoop - 1, np.zeros(len(gradient))])
+
+
+def _between(knots: Array, values: Array) -> tuple[np.ndarray, Array]:
+    """Index of the knot at or below each value, and how far it is on the way to the next."""
+    index = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, len(knots) - 2)
+    share = (values - knots[index]) / (knots[index + 1] - knots[index])
+    return index, np.clip(share, 0.0, 1.0)
