@@ -20,9 +20,10 @@ class SteadyMemory(Memory):
 
         Q_i = gamma_i (S - R_i S),   (R_i S)(x) = int_0^inf exp(-s / tau_i) S(x + V s) ds / tau_i.
 
-    R_i is integrated exactly for an S that is linear between the columns of a rectangular grid, one sweep an arm.
-    A solve takes ``share`` of the arms' stiffness implicitly and the rest as a known tensor,
-    ``h = (sum gamma_i - share) S - sum gamma_i R_i S``; ``equilibrium.steady`` repeats until h agrees with S.
+    R_i is integrated exactly for an S that is linear between the columns of a rectangular grid, one sweep an arm, and
+    Q_i taken half-way between them, where the slope of such an S is right to second order. A solve takes ``share``
+    of the arms' stiffness implicitly and the rest as a known tensor, ``h = sum Q_i - share S``;
+    ``equilibrium.steady`` repeats until h agrees with S.
 
     Material enters relaxed and undeformed: the grid must reach upstream to where nothing happens yet.
 
@@ -45,7 +46,7 @@ class SteadyMemory(Memory):
         places = np.stack([c.ravel() for c in np.meshgrid(self.columns, self.rows)], axis=1)  # x runs fastest
         self._grid = PointSearch(unknowns.body.mesh, unknowns.body.deformation, places)
         points = unknowns.points.places
-        self._column, self._across = _between(self.columns, points[..., 0])
+        self._column, self._across = _between(0.5 * (self.columns[1:] + self.columns[:-1]), points[..., 0])
         self._row, self._up = _between(self.rows, points[..., 1])
 
     def set_speed(self, speed: float, wavelength: float) -> None:
@@ -54,31 +55,32 @@ class SteadyMemory(Memory):
             raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest solve the equilibrium")
         self._speed = speed
         gap = np.diff(self.columns) / speed
-        self._factors = [step_factors(gap, time) for time in self.times]
+        self._factors = [(*step_factors(gap, time), *step_factors(gap / 2, time)) for time in self.times]
         x = 2 * np.pi * speed / wavelength * self.times
         self.share = float((self.ratios * x * x / (1 + x * x)).sum())
 
-    def relaxed(self) -> Array:
-        """``sum gamma_i R_i S`` on the grid in the present state, shape (rows, columns, 4) [MPa]."""
+    def overstress(self) -> Array:
+        """``sum Q_i`` of the present state half-way between the columns, shape (rows, columns - 1, 4) [MPa]."""
         stress = self.second_piola(self._grid_strain()).reshape(len(self.rows), len(self.columns), 4)
-        total = np.zeros_like(stress)
-        for ratio, (decay, mean) in zip(self.ratios, self._factors, strict=True):
-            now = stress[:, -1].copy()  # the first column upstream
-            total[:, -1] += ratio * now
+        middle = 0.5 * (stress[:, 1:] + stress[:, :-1])
+        total = np.zeros_like(middle)
+        for ratio, (decay, mean, half_decay, half_mean) in zip(self.ratios, self._factors, strict=True):
+            relaxed = stress[:, -1]  # R_i S in the first column upstream
             for i in range(len(self.columns) - 2, -1, -1):
+                e, a = half_decay[i], half_mean[i]
+                here = e * relaxed + (1 - a) * middle[:, i] + (a - e) * stress[:, i + 1]
+                total[:, i] += ratio * (middle[:, i] - here)
                 e, a = decay[i], mean[i]
-                now = e * now + (1 - a) * stress[:, i] + (a - e) * stress[:, i + 1]
-                total[:, i] += ratio * now
+                relaxed = e * relaxed + (1 - a) * stress[:, i] + (a - e) * stress[:, i + 1]
         return total
 
     def follow(self, strain: Array) -> Array:
         """The history h that belongs to the present state, whose strains at the points are given [MPa]."""
-        grid, column, row = self.relaxed(), self._column, self._row
+        grid, column, row = self.overstress(), self._column, self._row
         across, up = self._across[..., None], self._up[..., None]
         low = (1 - across) * grid[row, column] + across * grid[row, column + 1]
         high = (1 - across) * grid[row + 1, column] + across * grid[row + 1, column + 1]
-        instant = (float(self.ratios.sum()) - self.share) * self.second_piola(strain)
-        return instant - (1 - up) * low - up * high
+        return (1 - up) * low + up * high - self.share * self.second_piola(strain)
 
     def _grid_strain(self) -> Array:
         """Strains at the grid's points, shape (n, 6); the volumetric stress is left out."""

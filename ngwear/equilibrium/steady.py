@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from ngwear.effects.steady_memory import SteadyMemory
 from ngwear.equilibrium.problem import Problem
-from ngwear.equilibrium.stepping import StepOptions, Work, settle
+from ngwear.equilibrium.stepping import StepOptions, Work, relax, settle
 from ngwear.errors import ConvergenceError
 
 
@@ -47,7 +48,7 @@ def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions 
     for _ in range(options.max_rounds):
         report = settle(problem, StepOptions(), work)
         if not report.converged:
-            raise ConvergenceError("no equilibrium under the history of steady sliding", report)
+            work.add(relax(problem, StepOptions(first=0.25)))
         found = memory.follow(problem.points.strain(problem.state.vec.FV().NumPy()))
         miss = found - memory.history
         error = np.linalg.norm(volumes * miss) / np.linalg.norm(volumes * found)
@@ -64,8 +65,8 @@ def _accelerated(tried: list[np.ndarray], missed: list[np.ndarray], weight: np.n
     last, miss = tried[-1], missed[-1]
     if len(tried) == 1:
         return last + miss
-    steps = [b - a for a, b in zip(tried[:-1], tried[1:], strict=True)]
-    changes = [b - a for a, b in zip(missed[:-1], missed[1:], strict=True)]
+    steps = [b - a for a, b in pairwise(tried)]
+    changes = [b - a for a, b in pairwise(missed)]
     matrix = np.stack([(weight * c).ravel() for c in changes], axis=1)
     share, *_ = np.linalg.lstsq(matrix, (weight * miss).ravel(), rcond=1e-10)
     out = last + miss

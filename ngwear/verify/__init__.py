@@ -18,6 +18,7 @@ CASES: dict[str, str] = {
     "locking": "ngwear.verify.locking",
     "memory": "ngwear.verify.memory",
     "hertz": "ngwear.verify.hertz",
+    "hunter": "ngwear.verify.hunter",
     "p1a": "ngwear.verify.p1a",
     "ring": "ngwear.verify.ring",
     "block_on_ring": "ngwear.verify.block_on_ring",
