@@ -25,6 +25,7 @@ from ngwear.surfaces import Cylinder
 
 Array = NDArray[np.float64]
 WAKES = 4.0  # depth of a block over the length of its wake; a thinner one reads 6 % low and more
+LONGEST_WAKE = 100.0  # half lengths
 WIDE = 8.0  # a block that behaves like a half-plane, to 0.5 % of the friction: times the least one
 
 
@@ -73,8 +74,12 @@ class Asperity:
         return float(half)
 
     def wake(self, speed: float) -> float:
-        """Length over which the track recovers: V tau G_0 / G_inf, tau weighted by the arms' loss [mm]."""
-        return speed * self.loss_time(speed) * self.series.instantaneous
+        """Length over which the track recovers: V tau G_0 / G_inf, tau weighted by the arms' loss [mm].
+
+        At most 100 half lengths: what recovers more slowly than that is too shallow to matter.
+        """
+        length = speed * self.loss_time(speed) * self.series.instantaneous
+        return min(length, LONGEST_WAKE * self.half_length(speed))
 
     def least_depth(self, speed: float) -> float:
         """Four wakes, or thirty half lengths [mm]."""
@@ -133,8 +138,8 @@ class Slide:
 
     @property
     def frequency(self) -> float:
-        """Exciting frequency: speed over half length is the angular one [Hz]."""
-        return self.speed / self.half_length / (2 * np.pi)
+        """Exciting frequency: the contact's length is half a wave [Hz]."""
+        return self.speed / (2 * (self.end - self.start))
 
 
 def slide(asperity: Asperity, speed: float, *, fineness: int = 24, options: SteadyOptions | None = None) -> Slide:

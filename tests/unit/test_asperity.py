@@ -1,0 +1,63 @@
+"""Sliding of one asperity: what is refused, and limits that need no reference."""
+
+import numpy as np
+import pytest
+
+from ngwear.asperity import Asperity, slide
+from ngwear.errors import SceneError
+from ngwear.materials import NeoHooke, PronySeries
+from ngwear.plot_sliding import draw_friction, draw_pressures
+
+RUBBER = NeoHooke(shear=2.0, bulk_modulus=2e4)
+ARMS = PronySeries((1.0,), (1e-3,))
+
+
+def cylinder(**changes):
+    return Asperity(**{"material": RUBBER, "series": ARMS, "radius": 5.0, "load": 0.01, **changes})
+
+
+@pytest.fixture(scope="module")
+def slides():
+    return [slide(cylinder(), speed) for speed in (1e-3, 60.0, 1e6)]
+
+
+def test_friction_vanishes_where_nothing_or_everything_is_relaxed(slides):
+    slow, middle, fast = (s.friction for s in slides)
+    assert middle > 20 * abs(slow)
+    assert middle > 20 * abs(fast)
+
+
+def test_limits_are_hertz_with_the_relaxed_and_the_instantaneous_modulus(slides):
+    for s, stiffening in ((slides[0], 1.0), (slides[2], 2.0)):
+        half = np.sqrt(4 * 0.01 * 5.0 / (np.pi * 4 * 2.0 * stiffening))
+        assert s.half_length == pytest.approx(half, rel=5e-3)
+        assert s.centre == pytest.approx(0.0, abs=0.01 * half)
+        assert s.peak == pytest.approx(2 * 0.01 / (np.pi * half), rel=0.01)
+
+
+def test_contact_leans_ahead_of_the_axis(slides):
+    assert slides[1].centre > 0.05 * slides[1].half_length
+    assert slides[1].frequency == pytest.approx(60.0 / (4 * slides[1].half_length))
+
+
+def test_pictures(slides):
+    assert len(draw_friction(slides, ARMS).axes) == 2
+    assert len(draw_pressures(slides).axes[0].lines) == 3
+
+
+@pytest.mark.parametrize("speed", [0.0, -1.0, float("inf")])
+def test_steady_sliding_needs_a_speed(speed):
+    with pytest.raises(SceneError, match="above 0 mm/s"):
+        slide(cylinder(), speed)
+
+
+def test_block_too_small_for_its_wake_is_told_how_deep_to_be():
+    asperity = cylinder(depth=0.1)
+    with pytest.raises(SceneError, match=f"take {asperity.least_depth(60.0):.4g} mm or more"):
+        slide(asperity, 60.0)
+
+
+@pytest.mark.parametrize("change", [{"radius": 0.0}, {"load": -1.0}, {"depth": float("nan")}])
+def test_bad_values(change):
+    with pytest.raises(SceneError, match=next(iter(change))):
+        cylinder(**change)
