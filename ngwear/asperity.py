@@ -103,6 +103,8 @@ class Slide:
         [mm/s].
     friction : float
         Horizontal over vertical force: the internal friction of the rubber alone [-].
+    dissipation : float
+        What the rubber dissipates, over load and track: the same friction coefficient from energy [-].
     start, end : float
         Contact from the axis, the slider moving towards +x [mm].
     indentation : float
@@ -117,6 +119,7 @@ class Slide:
 
     speed: float
     friction: float
+    dissipation: float
     start: float
     end: float
     indentation: float
@@ -223,6 +226,7 @@ def _solve(
     return Slide(
         speed=speed,
         friction=-float(along / across),
+        dissipation=memory.drag() / asperity.load,
         start=float(start),
         end=float(end),
         indentation=float(travel[0]),

@@ -59,9 +59,9 @@ class SteadyMemory(Memory):
         x = 2 * np.pi * speed / wavelength * self.times
         self.share = float((self.ratios * x * x / (1 + x * x)).sum())
 
-    def overstress(self) -> Array:
-        """``sum Q_i`` of the present state half-way between the columns, shape (rows, columns - 1, 4) [MPa]."""
-        stress = self.second_piola(self._grid_strain()).reshape(len(self.rows), len(self.columns), 4)
+    def _overstress(self, strain: Array) -> Array:
+        """``sum Q_i`` half-way between the columns, shape (rows, columns - 1, 4) [MPa], of strains on the grid."""
+        stress = self.second_piola(strain).reshape(len(self.rows), len(self.columns), 4)
         middle = 0.5 * (stress[:, 1:] + stress[:, :-1])
         total = np.zeros_like(middle)
         for ratio, (decay, mean, half_decay, half_mean) in zip(self.ratios, self._factors, strict=True):
@@ -76,18 +76,36 @@ class SteadyMemory(Memory):
 
     def follow(self, strain: Array) -> Array:
         """The history h that belongs to the present state, whose strains at the points are given [MPa]."""
-        grid, column, row = self.overstress(), self._column, self._row
+        grid, column, row = self._overstress(self._grid_strain()), self._column, self._row
         across, up = self._across[..., None], self._up[..., None]
         low = (1 - across) * grid[row, column] + across * grid[row, column + 1]
         high = (1 - across) * grid[row + 1, column] + across * grid[row + 1, column + 1]
         return (1 - up) * low + up * high - self.share * self.second_piola(strain)
 
-    def _grid_strain(self) -> Array:
+    def drag(self) -> float:
+        """Work that the overstress does on the material per length of track [N/mm]; the friction force has to give it.
+
+        ``-int sum Q_i : dC/dx / 2``: elastic work adds up to nothing along a track that starts and ends at rest. Summed
+        on the grid, apart from the equilibrium, with strains that are averaged at the mesh's vertices: the jumps of
+        the gradient from element to element would count as dissipation.
+        """
+        strain = self._grid_strain(smooth=True)
+        fxx, fxy, fyx, fyy, hoop, _ = strain.T + np.array([1.0, 0.0, 0.0, 1.0, 1.0, 0.0])[:, None]
+        shape = (len(self.rows), len(self.columns), 4)
+        c = np.stack([fxx**2 + fyx**2, fxy**2 + fyy**2, fxx * fxy + fyx * fyy, hoop**2], axis=-1).reshape(shape)
+        double = np.array([1.0, 1.0, 2.0, 1.0])  # the shear stands twice in a symmetric tensor
+        per_row = (self._overstress(strain) * np.diff(c, axis=1) * double).sum(axis=(1, 2))
+        return float(-0.5 * np.trapezoid(per_row, self.rows))
+
+    def _grid_strain(self, *, smooth: bool = False) -> Array:
         """Strains at the grid's points, shape (n, 6); the volumetric stress is left out."""
         u = self._unknowns.state[DISPLACEMENT]
-        gradient = self._grid(ng.Grad(u))
+        gradient = ng.Grad(u)
+        if smooth:
+            gradient = ng.GridFunction(ng.MatrixValued(ng.H1(self._unknowns.body.mesh, order=1), 2))
+            gradient.Set(ng.Grad(u))
         hoop = self._grid(self._unknowns.kinematics.hoop_stretch(u))
-        return np.column_stack([gradient, hoop - 1, np.zeros(len(gradient))])
+        return np.column_stack([self._grid(gradient), hoop - 1, np.zeros(len(hoop))])
 
 
 def _between(knots: Array, values: Array) -> tuple[np.ndarray, Array]:
