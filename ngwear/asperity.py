@@ -26,6 +26,7 @@ from ngwear.surfaces import Cylinder
 Array = NDArray[np.float64]
 WAKES = 4.0  # depth of a block over the length of its wake; a thinner one reads 6 % low and more
 LONGEST_WAKE = 100.0  # half lengths
+ROUGH = 1e-2  # tolerance of the solve that only looks for the contact's ends
 WIDE = 8.0  # a block that behaves like a half-plane, to 0.5 % of the friction: times the least one
 
 
@@ -171,7 +172,9 @@ def slide(asperity: Asperity, speed: float, *, fineness: int = 24, options: Stea
         )
     half = asperity.half_length(speed)
     work = Work()
-    rough = _solve(asperity, speed, depth, np.array([-half, half]), half / 12, half / 12, options, work)
+    options = options or SteadyOptions()
+    first = replace(options, tolerance=max(options.tolerance, ROUGH))
+    rough = _solve(asperity, speed, depth, np.array([-half, half]), half / 12, half / 12, first, work)
     half = rough.half_length
     finest = float(np.clip(speed * asperity.loss_time(speed) / 4, half / 600, half / 120))
     ends = np.array([rough.start, rough.end])
@@ -186,7 +189,7 @@ def _solve(
     ends: Array,
     middle: float,
     finest: float,
-    options: SteadyOptions | None,
+    options: SteadyOptions,
     work: Work,
 ) -> Slide:
     """One mesh: elements of ``finest`` at the contact's ends, ``middle`` in it."""

@@ -63,7 +63,3 @@ class Viscosity(Memory):
             q += ratio * ((1 - mean) * now + (mean - decay) * self._start)
         self._start = now
         self.set_time_step(self.time_step)
-
-    def overstress(self) -> Array:
-        """Q_i of the arms at the last committed state, shape (arms, elements, points, 4) [MPa]."""
-        return self.ratios[:, None, None, None] * self._start - self.relaxed

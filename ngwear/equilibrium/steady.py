@@ -21,7 +21,7 @@ class SteadyOptions:
     Parameters
     ----------
     tolerance : float
-        Largest change of the history over its largest value in the last round [-].
+        Largest accepted change of the history in the last round over the history, in the L2 norm [-].
     max_rounds : int
     memory : int
         Earlier rounds that Anderson's acceleration combines.

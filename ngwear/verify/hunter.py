@@ -9,12 +9,16 @@ Standard linear solid ``E*(t) = E_inf + E_1 exp(-t / tau)``, incompressible. Clo
 
 E_inf = 13.33, E_1 = 40 MPa, tau = 1 ms, R = 0.25 mm, P = 0.5 N/mm. The theory is of small strains, and l/R = 0.2 to 0.4
 is not: solved is its own scaling R -> 100 R, P -> P / 100, under which l and c stay and mu falls to a hundredth, with
-strains of 0.4 %. The block is 8 times the larger of four wakes ``V tau (E_inf + E_1) / E_inf`` and 30 l deep: with half
-of these mu comes out 1 % lower. What dissipates sits at the ends of the contact, within V tau: elements of V tau / 4
-there (at most l / 120), l / 24 between.
+strains of 0.4 %. At finite strain, ``steady(speed, scale=1.0)``, friction is 4.6 % above Hunter's at 1 mm/s, 2.9 % at 20 and
+0.2 % below at 2000.
 
-The rubber's dissipation gives the same friction to 1 % from 20 mm/s on. At 1 and 5 mm/s it reads 2.8 and 1.3 % high:
-there V tau is 1 to 5 % of l, and the squared strain gradients at the contact's ends converge slowly with the mesh.
+The block is eight times ``Asperity.least_depth`` deep: at 200 mm/s friction is 3.9, 1.3, 0.6 and 0.3 % low with one, two,
+four and eight times (``slide`` with a depth). What dissipates sits at the ends of the contact, within V tau: elements of
+V tau / 4 there (at most l / 120), l / 24 between.
+
+The rubber's dissipation gives the same friction to 1 % from 20 mm/s on. At 1 and 5 mm/s it reads 2.6 and 1.3 % high, and
+these two checks stand as failed: there V tau is 1 to 5 % of l, and the squared strain gradients at the contact's ends
+converge slowly with the mesh.
 """
 
 from __future__ import annotations
@@ -31,7 +35,6 @@ RADIUS, LOAD = 0.25, 0.5  # mm, N/mm
 LONG_TERM, ARM, TIME = 13.33, 40.0, 1e-3  # MPa, MPa, s
 SPEEDS = (1.0, 5.0, 20.0, 32.1, 50.0, 200.0, 2000.0)  # mm/s
 SCALE = 100.0
-ENERGY_FROM = 20.0  # mm/s
 SHEAR = LONG_TERM / 4  # E* = 4 G
 RUBBER = NeoHooke(shear=SHEAR, bulk_modulus=1e5 * SHEAR)
 
@@ -77,7 +80,6 @@ def run() -> list[Check]:
         ):
             values = (found[name], expected[name])
             checks.append(Check("hunter", quantity.format(f"{speed:g}"), *values, tolerance, clock.seconds))
-        if speed >= ENERGY_FROM:
-            quantity = f"friction from dissipation at {speed:g} mm/s [-]"
-            checks.append(Check("hunter", quantity, found["dissipation"], found["friction"], 0.01, clock.seconds))
+        quantity = f"friction from dissipation at {speed:g} mm/s [-]"
+        checks.append(Check("hunter", quantity, found["dissipation"], found["friction"], 0.01, clock.seconds))
     return checks
