@@ -114,7 +114,7 @@ def _explain(options: argparse.Namespace) -> int:
 
 
 def _plot(options: argparse.Namespace) -> int:
-    from ngwear.plot import plot
+    from ngwear.plots.wear import plot
 
     for path in plot(options.folder):
         print(path)

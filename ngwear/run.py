@@ -117,7 +117,7 @@ def run(
         if scene.save.vtk and state is not None:
             _write_vtk(folder.path, state)
         if figures and recorder.rows:
-            from ngwear.plot import plot
+            from ngwear.plots.wear import plot
 
             plot(folder.path)
     if error is not None and throw:

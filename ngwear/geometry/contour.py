@@ -83,6 +83,12 @@ class Contour:
     def __len__(self) -> int:
         return len(self.points)
 
+    @classmethod
+    def rectangle(cls, x: tuple[float, float], y: tuple[float, float]) -> Contour:
+        """Rectangle with the edges bottom, right, top and left."""
+        corners = np.array([[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
+        return cls(corners, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
+
     @cached_property
     def lengths(self) -> Array:
         """Chord length of each segment [mm], shape (n,)."""

@@ -10,12 +10,6 @@ from ngwear.geometry.contour import Array, Contour
 from ngwear.geometry.sizing import SizeField
 
 
-def rectangle(x: tuple[float, float], y: tuple[float, float]) -> Contour:
-    """Rectangle with the edges bottom, right, top and left."""
-    points = np.array([[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
-    return Contour(points, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
-
-
 def quarter_ring(inner: float, outer: float) -> Contour:
     """Quarter of a ring around the origin with the edges bore and outside, and the cuts along x and along y."""
     n = 60  # segments an arc: the spline is then within 3e-8 radii of the circle

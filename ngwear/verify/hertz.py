@@ -19,10 +19,11 @@ from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
+from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.builders import meshed, rectangle
+from ngwear.verify.builders import meshed
 
 MATERIAL = NeoHooke.from_young(1.0, 0.3)
 RADIUS, HALF_WIDTH, BLOCK = 250.0, 1.0, 100.0
@@ -38,7 +39,7 @@ def run() -> list[Check]:
 
     at = np.arange(0.0, 1.1 * a, SIZE)
     seeds = np.stack([at, np.full(len(at), BLOCK)], axis=1)
-    body = meshed(rectangle((0.0, BLOCK), (0.0, BLOCK)), COARSE, seeds, SIZE)
+    body = meshed(Contour.rectangle((0.0, BLOCK), (0.0, BLOCK)), COARSE, seeds, SIZE)
     cylinder = Cylinder(centre=(0.0, BLOCK + RADIUS), radius=RADIUS)
     contact = Contact("cylinder", ("top",), cylinder, force_controlled=True, modulus=MATERIAL.shear_modulus)
     supports = [Support(("bottom",)), Support(("left",), y=False)]

@@ -27,8 +27,8 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import i0e, i1e, k0e, k1e
 
-from ngwear.asperity import Asperity, slide
 from ngwear.materials import NeoHooke, PronySeries
+from ngwear.sliding.asperity import Asperity, slide
 from ngwear.verify.base import Check, Stopwatch
 
 RADIUS, LOAD = 0.25, 0.5  # mm, N/mm

@@ -26,10 +26,11 @@ from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
+from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke, PronySeries
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.builders import meshed, rectangle
+from ngwear.verify.builders import meshed
 
 Array = NDArray[np.float64]
 RUBBER = NeoHooke(shear=1.0, bulk_modulus=1e9)
@@ -44,7 +45,7 @@ def arms(count: int) -> PronySeries:
 
 def block(series: PronySeries, *, force_controlled: bool) -> tuple[Problem, Contact]:
     """Block of 1 x 1 mm under a plate."""
-    body = meshed(rectangle((0.0, 1.0), (0.0, 1.0)), 1.0)
+    body = meshed(Contour.rectangle((0.0, 1.0), (0.0, 1.0)), 1.0)
     plate = Plane(point=(0.5, 1.0), normal_vector=(0.0, -1.0))
     # The modulus given to the contact only makes its own give negligible: 1e-9 of the block's.
     lid = Contact("lid", ("top",), plate, modulus=1e3, force_controlled=force_controlled)

@@ -23,10 +23,11 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import advance, relax
 from ngwear.fields.kinematics import PlaneStrain
+from ngwear.geometry.contour import Contour
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.builders import meshed, rectangle
+from ngwear.verify.builders import meshed
 
 THICKNESS, WIDTH, RADIUS = 2.0, 20.0, 5.0
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0)
@@ -39,7 +40,7 @@ def sheet(*, force_controlled: bool, edge: float) -> tuple[Problem, Contact]:
     at = np.concatenate([patch, ends])
     size = np.repeat([PATCH, EDGE], [len(patch), len(ends)])
     seeds = np.stack([at, np.full(len(at), THICKNESS)], axis=1)
-    body = meshed(rectangle((0.0, WIDTH / 2), (0.0, THICKNESS)), COARSE, seeds, size)
+    body = meshed(Contour.rectangle((0.0, WIDTH / 2), (0.0, THICKNESS)), COARSE, seeds, size)
     cylinder = Cylinder(centre=(0.0, THICKNESS + RADIUS), radius=RADIUS)
     contact = Contact("roller", ("top",), cylinder, force_controlled=force_controlled, modulus=RUBBER.shear_modulus)
     supports = [Support(("bottom",)), Support(("left",), y=False)]

@@ -23,10 +23,11 @@ from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import Axisymmetric
+from ngwear.geometry.contour import Contour
 from ngwear.materials import Hyperelastic, MooneyRivlin, NeoHooke
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.builders import mean, meshed, rectangle
+from ngwear.verify.builders import mean, meshed
 from ngwear.verify.closed_forms import expanding_pressure
 
 INNER, OUTER, LENGTH = 5.0, 10.0, 2.0
@@ -42,7 +43,7 @@ def lame_compliance(material: Hyperelastic) -> float:
 
 
 def _problem(material: Hyperelastic, load: Term) -> Problem:
-    body = meshed(rectangle((0.0, LENGTH), (INNER, OUTER)), SIZE)
+    body = meshed(Contour.rectangle((0.0, LENGTH), (INNER, OUTER)), SIZE)
     held = Support(("left", "right"), y=False)
     return Problem(body, Axisymmetric(), [Elasticity(material), load], supports=[held])
 

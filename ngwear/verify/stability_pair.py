@@ -17,11 +17,11 @@ import warnings
 import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
+from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
 from ngwear.scene import Accuracy, ContactSpec, Program, Scene, Stroke, SupportSpec, Wear
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.builders import rectangle
 from ngwear.verify.wear_runs import steps
 from ngwear.wear.archard import critical_distance
 
@@ -36,7 +36,7 @@ def scene(scheme: str, times: float) -> Scene:
     counter = Plane(point=(0.0, HEIGHT), normal_vector=(0.0, -1.0))
     return Scene(
         name=f"{scheme} wear",
-        contour=rectangle((-HALF, HALF), (0.0, HEIGHT)),
+        contour=Contour.rectangle((-HALF, HALF), (0.0, HEIGHT)),
         material=RUBBER,
         contacts=(
             ContactSpec(

@@ -25,10 +25,11 @@ from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain
 from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.builders import meshed, rectangle
+from ngwear.verify.builders import meshed
 
 STEP, TOLERANCE = 1e-5, 1e-6
 WIDTH, BOTTOM, TOP, SIZE = 4.0, 1.0, 3.0, 0.5
@@ -128,7 +129,7 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
 
 def run() -> list[Check]:
     """One check a term and variant."""
-    body = meshed(rectangle((0.0, WIDTH), (BOTTOM, TOP)), SIZE)
+    body = meshed(Contour.rectangle((0.0, WIDTH), (BOTTOM, TOP)), SIZE)
     checks = []
     for label, kinematics, terms in _cases():
         clock, rng = Stopwatch(), np.random.default_rng(7)

@@ -14,9 +14,9 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import toeplitz
 
-from ngwear.asperity import Asperity, slide
 from ngwear.errors import ConvergenceError
 from ngwear.materials import PronySeries
+from ngwear.sliding.asperity import Asperity, slide
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.hunter import ARM, LOAD, LONG_TERM, RADIUS, RUBBER, SCALE, TIME, closed_form
 

@@ -14,7 +14,6 @@ from ngwear.materials import Hyperelastic
 from ngwear.scene import Accuracy, ContactSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Cylinder
-from ngwear.verify.builders import rectangle
 
 if TYPE_CHECKING:
     from ngwear.state import State
@@ -60,7 +59,7 @@ class CylinderOnBlock:
         ring = Cylinder(centre=(0.0, size + self.radius), radius=self.radius)
         return Scene(
             name=name,
-            contour=rectangle((-size, size), (0.0, size)),
+            contour=Contour.rectangle((-size, size), (0.0, size)),
             material=self.material,
             contacts=(
                 ContactSpec(

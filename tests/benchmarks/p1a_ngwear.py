@@ -24,8 +24,7 @@ PATCH, BOTTOM, COARSE = 0.15, 0.25, 0.6  # element edges [mm]
 
 def main():
     """Solve and print the force [N/mm]."""
-    corners = np.array([[-WIDTH / 2, 0.0], [WIDTH / 2, 0.0], [WIDTH / 2, THICKNESS], [-WIDTH / 2, THICKNESS]])
-    outline = Contour(corners, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
+    outline = Contour.rectangle((-WIDTH / 2, WIDTH / 2), (0.0, THICKNESS))
     top = [(x, THICKNESS) for x in np.linspace(-2.0, 2.0, 28)]
     bottom = [(x, 0.0) for x in np.linspace(-3.5, 3.5, 29)]
     sizes = np.repeat([PATCH, BOTTOM], [len(top), len(bottom)])

@@ -16,7 +16,7 @@ from ngwear.equilibrium.linear import has_pardiso
 from ngwear.errors import GeometryError, ResultError
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
-from ngwear.plot import plot
+from ngwear.plots.wear import plot
 from ngwear.results import CHECKPOINT, FIELDS, SERIES, Folder
 from ngwear.run import run
 from ngwear.scenefile import read_scene

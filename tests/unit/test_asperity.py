@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from ngwear.asperity import Asperity, slide
 from ngwear.errors import SceneError
 from ngwear.materials import NeoHooke, PronySeries
-from ngwear.plot_sliding import draw_friction, draw_pressures
+from ngwear.plots.sliding import draw_friction, draw_pressures
+from ngwear.sliding.asperity import Asperity, slide
 
 RUBBER = NeoHooke(shear=2.0, bulk_modulus=2e4)
 ARMS = PronySeries((1.0,), (1e-3,))

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from ngwear.errors import ResultError
-from ngwear.plot import plot, read_result
+from ngwear.plots.wear import plot, read_result
 from ngwear.results import CHECKPOINT, FIELDS, SERIES, SUMMARY, Folder, Recorder, depths, fingerprint
 from ngwear.scenefile import read_scene
 

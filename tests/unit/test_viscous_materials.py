@@ -8,7 +8,7 @@ from ngwear.materials import WLF, Arrhenius, PronySeries
 from ngwear.materials.calibrate import PoorFitWarning, fit_dma, fit_relaxation, fit_tension, fit_wlf
 from ngwear.materials.library import GLASS, compound, filled_rubber, young_from_hardness
 from ngwear.materials.measurements import Dma, Relaxation, Tension, read_dma, read_relaxation, read_tension
-from ngwear.plot_fits import draw_prony, draw_shift, draw_tension
+from ngwear.plots.fits import draw_prony, draw_shift, draw_tension
 
 ARMS = PronySeries((2.0, 1.0, 0.5), (1e-3, 1e-2, 1e-1))
 HERTZ = np.geomspace(0.1, 1e4, 41)

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ngwear.asperity import Slide
 from ngwear.materials import PronySeries
+from ngwear.sliding.asperity import Slide
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -204,8 +204,7 @@ def _solve(
     ahead = _march(right, depth, lambda x: max(middle, 0.08 * (x - right)))[1:]
     columns = np.concatenate([behind, seeds, ahead])
     rows = depth - _march(0.0, depth, lambda y: max(finest / 2, 0.08 * y))[::-1]
-    corners = np.array([[-depth, 0.0], [depth, 0.0], [depth, depth], [-depth, depth]])
-    contour = Contour(corners, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
+    contour = Contour.rectangle((-depth, depth), (0.0, depth))
     places = np.stack([seeds, np.full(len(seeds), depth)], axis=1)
     body = Body(contour, SizeField(places, np.array([patch(x) for x in seeds]), depth / 4))
     cylinder = Cylinder(centre=(0.0, depth + asperity.radius), radius=asperity.radius)
