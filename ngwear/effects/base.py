@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.material_points import MaterialPoints
-from ngwear.geometry.body import Body
+from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ VOLUMETRIC_STRESS = "volumetric stress"
 class Unknowns:
     """Trial and test functions and state by name, and the body, kinematics and material points they live on."""
 
-    body: Body
+    body: Meshed
     kinematics: Kinematics
     trial: dict[str, Any]
     test: dict[str, Any]
@@ -55,7 +55,7 @@ class Term(abc.ABC):
     def __init__(self) -> None:
         self.loads: dict[str, ng.Parameter] = {}
 
-    def spaces(self, body: Body) -> dict[str, ng.FESpace]:
+    def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
         """Unknowns that the term adds, by name."""
         return {}
 
@@ -84,7 +84,7 @@ class VolumeTerm(Term):
     def response(self, strain: Array, *, tangent: bool) -> tuple[Array, Array | None]:
         """Stress conjugate to the strain of ``fields.material_points`` and, if asked for, its derivative.
 
-        Shapes (..., 6) and (..., 6, 6), per reference volume; not a number where the strain is not admissible
+        Shapes (..., n) and (..., n, n), per reference volume; not a number where the strain is not admissible
         (J <= 0).
         """
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import ngsolve as ng
 
 from ngwear.effects.base import VOLUMETRIC_STRESS, Array, Unknowns, VolumeTerm
-from ngwear.effects.isochoric import Invariants, isochoric_energy, respond
-from ngwear.geometry.body import Body
+from ngwear.effects.invariants import Invariants
+from ngwear.effects.isochoric import isochoric_energy, respond
+from ngwear.geometry.meshed import Meshed
 from ngwear.materials import Hyperelastic
 
 POINTWISE = 10.0  # Ks / G
@@ -36,29 +37,29 @@ class Elasticity(VolumeTerm):
         pointwise = min(POINTWISE * self.material.shear_modulus, bulk / 2)
         return pointwise, bulk - pointwise
 
-    def spaces(self, body: Body) -> dict[str, ng.FESpace]:
+    def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
         return {VOLUMETRIC_STRESS: ng.H1(body.mesh, order=self.order - 1)}
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         self._state, self._points = unknowns.state, unknowns.points
 
     def energy(self, strain: Array) -> Array:
-        """Energy per reference volume [MPa] at strains of shape (..., 6)."""
-        at = Invariants(strain)
+        """Energy per reference volume [MPa] at strains of shape (..., n + 1)."""
+        at = Invariants.of(strain)
         pointwise, rest = self.split
         psi = isochoric_energy(self.material, at)
         return psi + (at.j - 1) * (pointwise / 2 * (at.j - 1) + at.p) - at.p * at.p / (2 * rest)
 
     def response(self, strain: Array, *, tangent: bool) -> tuple[Array, Array | None]:
-        at = Invariants(strain)
+        at = Invariants.of(strain)
         pointwise, rest = self.split
         volumetric = pointwise * (at.j - 1) + at.p
         stress, slope = respond(self.material, at, strain, tangent=tangent, by_j=volumetric, by_jj=pointwise)
-        stress[..., 5] = at.j - 1 - at.p / rest
+        stress[..., -1] = at.j - 1 - at.p / rest
         if slope is not None:
-            for m in range(5):
-                slope[..., m, 5] = slope[..., 5, m] = at.gj[m]
-            slope[..., 5, 5] = -1 / rest
+            for m, by_q in enumerate(at.gj):
+                slope[..., m, -1] = slope[..., -1, m] = by_q
+            slope[..., -1, -1] = -1 / rest
         return stress, slope
 
     def hoop_force(self, vector: Array) -> float:

@@ -6,7 +6,7 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import Term, Unknowns
-from ngwear.effects.contact import Contact
+from ngwear.effects.unilateral import UnilateralContact
 from ngwear.errors import SceneError
 
 
@@ -19,7 +19,7 @@ class FullSliding(Term):
 
     Parameters
     ----------
-    contact : Contact
+    contact : UnilateralContact
     coefficient : float
         mu [-], >= 0.
 
@@ -31,7 +31,7 @@ class FullSliding(Term):
 
     symmetric = False
 
-    def __init__(self, contact: Contact, coefficient: float) -> None:
+    def __init__(self, contact: UnilateralContact, coefficient: float) -> None:
         super().__init__()
         if coefficient < 0:
             raise SceneError(f"contact {contact.name}.friction", coefficient, "must be at least 0")
@@ -42,16 +42,15 @@ class FullSliding(Term):
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         contact = self.contact
         p = unknowns.trial[contact.pressure_name]
-        tx, ty = contact.surface.tangent(*contact.place(unknowns.trial))
-        v = unknowns.v
+        tangent = contact.surface.tangent(*contact.place(unknowns.trial))
         traction = self.coefficient * self.slip * p * unknowns.kinematics.weight
-        work = -traction * (tx * v[0] + ty * v[1])
+        work = -traction * sum(t * unknowns.v[i] for i, t in enumerate(tangent))
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
 
     def force(self) -> np.ndarray:
-        """Resultant of the friction on the part; shape (2,) [N], or N/mm in plane strain."""
+        """Resultant of the friction on the part; [N], or N/mm in plane strain."""
         known, contact = self._unknowns, self.contact
         p = known.state[contact.pressure_name]
         scale = self.coefficient * self.slip.Get() * p * known.kinematics.weight

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from ngwear.effects.base import Array, Unknowns, VolumeTerm
-from ngwear.effects.isochoric import Invariants, respond
+from ngwear.effects.invariants import Invariants
+from ngwear.effects.isochoric import respond
 from ngwear.materials import Hyperelastic, PronySeries
 
 
@@ -22,8 +23,8 @@ class Memory(VolumeTerm):
     ----------
     share : float
         Stiffness that the arms add to the long-term one in a solve [-].
-    history : array, shape (elements, points, 4)
-        h: xx, yy, xy and hoop [MPa].
+    history : array, shape (elements, points, 4 or 6)
+        h [MPa]: xx, yy, xy and hoop of a section; xx, yy, zz, xy, xz and yz of a solid.
     """
 
     def __init__(self, material: Hyperelastic, series: PronySeries) -> None:
@@ -34,36 +35,27 @@ class Memory(VolumeTerm):
 
     def lay(self, unknowns: Unknowns) -> None:
         """Start without a history."""
-        self.history = np.zeros((*unknowns.points.volumes.shape, 4))
+        self.history = np.zeros((*unknowns.points.volumes.shape, 4 if unknowns.body.mesh.dim == 2 else 6))
 
     def response(self, strain: Array, *, tangent: bool) -> tuple[Array, Array | None]:
-        at = Invariants(strain)
+        at = Invariants.of(strain)
         stress, slope = respond(self.material, at, strain, tangent=tangent, by_j=0.0, by_jj=0.0)
         stress *= self.share
-        xx, yy, xy, hoop = np.moveaxis(self.history, -1, 0)
-        f = at.gradient
-        for row in (0, 2):  # F h
-            stress[..., row] += xx * f[row] + xy * f[row + 1]
-            stress[..., row + 1] += xy * f[row] + yy * f[row + 1]
-        stress[..., 4] += hoop * at.hoop
+        for m, part in enumerate(at.push(self.history)):
+            stress[..., m] += part
         if slope is not None:
             slope *= self.share
-            for row in (0, 2):
-                slope[..., row, row] += xx
-                slope[..., row + 1, row + 1] += yy
-                slope[..., row, row + 1] += xy
-                slope[..., row + 1, row] += xy
-            slope[..., 4, 4] += hoop
+            for (m, n), part in at.metric(self.history).items():
+                slope[..., m, n] += part
+                if m != n:
+                    slope[..., n, m] += part
         return stress, slope
 
     def second_piola(self, strain: Array) -> Array:
-        """Isochoric second Piola stress of the long-term energy, shape (..., 4) [MPa]."""
-        at = Invariants(strain)
+        """Isochoric second Piola stress of the long-term energy; the shape of a history [MPa]."""
+        at = Invariants.of(strain)
         stress, _ = respond(self.material, at, strain, tangent=False, by_j=0.0, by_jj=0.0)
-        p = np.moveaxis(stress, -1, 0)
-        xx, xy, yx, yy = at.gradient
-        parts = (yy * p[0] - xy * p[2], xx * p[3] - yx * p[1], yy * p[1] - xy * p[3])  # F^-1 P, times the determinant
-        return np.stack([*(part / (xx * yy - xy * yx) for part in parts), p[4] / at.hoop], axis=-1)
+        return at.pull(stress)
 
 
 def step_factors(step: Array | float, times: Array) -> tuple[Array, Array]:

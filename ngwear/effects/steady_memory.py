@@ -2,114 +2,120 @@
 
 from __future__ import annotations
 
+import math
+
 import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
+from ngwear.effects.invariants import Invariants
 from ngwear.effects.memory import Memory, step_factors
 from ngwear.errors import SceneError
+from ngwear.fields.stream import StreamGrid
 from ngwear.fields.transfer import PointSearch
 from ngwear.materials import Hyperelastic, PronySeries
 
 
 class SteadyMemory(Memory):
-    """Arms of a generalised Maxwell model in the frame of a slider that moves along x at constant speed.
+    """Arms of a generalised Maxwell model in the frame of a slider that moves along its track at constant speed.
 
-    What the reference material carries flows through the frame at -V along rows of constant y, so that time along
+    What the reference material carries flows through the frame at -V along rows of the grid, so that time along
     a row is ``t = -x / V`` and the arms are known at once:
 
         Q_i = gamma_i (S - R_i S),   (R_i S)(x) = int_0^inf exp(-s / tau_i) S(x + V s) ds / tau_i.
 
-    R_i is integrated exactly for an S that is linear between the columns of a rectangular grid, one sweep an arm, and
+    R_i is integrated exactly for an S that is linear between the columns of the grid, one sweep an arm, and
     Q_i taken half-way between them, where the slope of such an S is right to second order. A solve takes ``share``
     of the arms' stiffness implicitly and the rest as a known tensor, ``h = sum Q_i - share S``;
     ``equilibrium.steady`` repeats until h agrees with S.
 
-    Material enters relaxed and undeformed: the grid must reach upstream to where nothing happens yet.
+    On a straight track the material enters relaxed and undeformed: the grid must reach upstream to where nothing
+    happens yet. On a circular one it enters as it left, relaxed for the rest of the way around, undeformed there:
+    the slider has been running for ever.
 
     Parameters
     ----------
     material : Hyperelastic
     series : PronySeries
-    columns, rows : array
-        Coordinates x and y of the grid, rising [mm].
+    grid : StreamGrid
     """
 
-    def __init__(self, material: Hyperelastic, series: PronySeries, *, columns: Array, rows: Array) -> None:
+    def __init__(self, material: Hyperelastic, series: PronySeries, grid: StreamGrid) -> None:
         super().__init__(material, series)
-        self.columns, self.rows = np.asarray(columns, dtype=float), np.asarray(rows, dtype=float)
-        self._speed = 0.0
+        self.grid = grid
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         self.lay(unknowns)
         self._unknowns = unknowns
-        places = np.stack([c.ravel() for c in np.meshgrid(self.columns, self.rows)], axis=1)  # x runs fastest
-        self._grid = PointSearch(unknowns.body.mesh, unknowns.body.deformation, places)
-        points = unknowns.points.places
-        self._column, self._across = _between(0.5 * (self.columns[1:] + self.columns[:-1]), points[..., 0])
-        self._row, self._up = _between(self.rows, points[..., 1])
+        self._search = PointSearch(unknowns.body.mesh, self.grid.places, unknowns.body.deformation)
+        self._points = unknowns.points.places
+        self._to_points = self.grid.between(self._points.reshape(-1, self._points.shape[-1]))
 
     def set_speed(self, speed: float, wavelength: float) -> None:
         """Sliding speed [mm/s], and the length 2 pi / k of the contact's pressure that sets the implicit share."""
         if not speed > 0:
             raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest solve the equilibrium")
-        self._speed = speed
-        gap = np.diff(self.columns) / speed
+        gap = np.diff(self.grid.columns) / speed
         self._factors = [(*step_factors(gap, time), *step_factors(gap / 2, time)) for time in self.times]
+        around = 2 * np.pi * self.grid.track_radius - np.ptp(self.grid.columns)
+        self._around = np.exp(-around / speed / self.times)  # 0 on a straight track
         x = 2 * np.pi * speed / wavelength * self.times
         self.share = float((self.ratios * x * x / (1 + x * x)).sum())
 
     def _overstress(self, strain: Array) -> Array:
-        """``sum Q_i`` half-way between the columns, shape (rows, columns - 1, 4) [MPa], of strains on the grid."""
-        stress = self.second_piola(strain).reshape(len(self.rows), len(self.columns), 4)
+        """``sum Q_i`` half-way between the columns, shape (rows, columns - 1, k) [MPa], of strains on the grid."""
+        stress = self.grid.turned(self.second_piola(strain), self.grid.places)
+        stress = stress.reshape(*self.grid.shape, -1)
         middle = 0.5 * (stress[:, 1:] + stress[:, :-1])
         total = np.zeros_like(middle)
-        for ratio, (decay, mean, half_decay, half_mean) in zip(self.ratios, self._factors, strict=True):
-            relaxed = stress[:, -1]  # R_i S in the first column upstream
-            for i in range(len(self.columns) - 2, -1, -1):
-                e, a = half_decay[i], half_mean[i]
-                here = e * relaxed + (1 - a) * middle[:, i] + (a - e) * stress[:, i + 1]
-                total[:, i] += ratio * (middle[:, i] - here)
-                e, a = decay[i], mean[i]
-                relaxed = e * relaxed + (1 - a) * stress[:, i] + (a - e) * stress[:, i + 1]
+        for ratio, factors, around in zip(self.ratios, self._factors, self._around, strict=True):
+            entering = stress[:, -1]
+            if self.grid.circular:
+                leaving, _ = self._relaxed(stress, middle, np.zeros_like(entering), factors)
+                entering = around * leaving / (1 - around * math.prod(factors[0]))
+            _, relaxed = self._relaxed(stress, middle, entering, factors)
+            total += ratio * (middle - relaxed)
         return total
+
+    @staticmethod
+    def _relaxed(stress: Array, middle: Array, entering: Array, factors: tuple[Array, ...]) -> tuple[Array, Array]:
+        """R_i S where the material leaves the grid, and half-way between the columns."""
+        found, now = np.empty_like(middle), entering
+        for i, (decay, mean, half_decay, half_mean) in reversed(list(enumerate(zip(*factors, strict=True)))):
+            found[:, i] = (
+                half_decay * now + (1 - half_mean) * middle[:, i] + (half_mean - half_decay) * stress[:, i + 1]
+            )
+            now = decay * now + (1 - mean) * stress[:, i] + (mean - decay) * stress[:, i + 1]
+        return now, found
 
     def follow(self, strain: Array) -> Array:
         """The history h that belongs to the present state, whose strains at the points are given [MPa]."""
-        grid, column, row = self._overstress(self._grid_strain()), self._column, self._row
-        across, up = self._across[..., None], self._up[..., None]
-        low = (1 - across) * grid[row, column] + across * grid[row, column + 1]
-        high = (1 - across) * grid[row + 1, column] + across * grid[row + 1, column + 1]
-        return (1 - up) * low + up * high - self.share * self.second_piola(strain)
+        grid = self._overstress(self._grid_strain())
+        there = (self._to_points @ grid.reshape(-1, grid.shape[-1])).reshape(*self._points.shape[:-1], -1)
+        return self.grid.turned(there, self._points, back=True) - self.share * self.second_piola(strain)
 
     def drag(self) -> float:
-        """Work that the overstress does on the material per length of track [N/mm]; the friction force has to give it.
+        """Work that the overstress does on the material per length of track [N/mm, or N]; the friction force's.
 
         ``-int sum Q_i : dC/dx / 2``: elastic work adds up to nothing along a track that starts and ends at rest. Summed
         on the grid, apart from the equilibrium, with strains that are averaged at the mesh's vertices: the jumps of
         the gradient from element to element would count as dissipation.
         """
         strain = self._grid_strain(smooth=True)
-        fxx, fxy, fyx, fyy, hoop, _ = strain.T + np.array([1.0, 0.0, 0.0, 1.0, 1.0, 0.0])[:, None]
-        shape = (len(self.rows), len(self.columns), 4)
-        c = np.stack([fxx**2 + fyx**2, fxy**2 + fyy**2, fxx * fxy + fyx * fyy, hoop**2], axis=-1).reshape(shape)
-        double = np.array([1.0, 1.0, 2.0, 1.0])  # the shear stands twice in a symmetric tensor
-        per_row = (self._overstress(strain) * np.diff(c, axis=1) * double).sum(axis=(1, 2))
-        return float(-0.5 * np.trapezoid(per_row, self.rows))
+        stretching = Invariants.of(strain).stretching
+        double = np.where(np.arange(stretching.shape[-1]) < 3, 1.0, 2.0) if self.grid.circular else 1.0
+        c = self.grid.turned(stretching / double, self.grid.places) * double
+        change = np.diff(c.reshape(*self.grid.shape, -1), axis=1)
+        return float(-0.5 * self.grid.areas @ (self._overstress(strain) * change).sum(axis=(1, 2)))
 
     def _grid_strain(self, *, smooth: bool = False) -> Array:
-        """Strains at the grid's points, shape (n, 6); the volumetric stress is left out."""
-        u = self._unknowns.state[DISPLACEMENT]
+        """Strains at the grid's points; the volumetric stress is left out."""
+        u, mesh = self._unknowns.state[DISPLACEMENT], self._unknowns.body.mesh
         gradient = ng.Grad(u)
         if smooth:
-            gradient = ng.GridFunction(ng.MatrixValued(ng.H1(self._unknowns.body.mesh, order=1), 2))
+            gradient = ng.GridFunction(ng.MatrixValued(ng.H1(mesh, order=1), mesh.dim))
             gradient.Set(ng.Grad(u))
-        hoop = self._grid(self._unknowns.kinematics.hoop_stretch(u))
-        return np.column_stack([self._grid(gradient), hoop - 1, np.zeros(len(hoop))])
-
-
-def _between(knots: Array, values: Array) -> tuple[np.ndarray, Array]:
-    """Index of the knot at or below each value, and how far it is on the way to the next."""
-    index = np.clip(np.searchsorted(knots, values, side="right") - 1, 0, len(knots) - 2)
-    share = (values - knots[index]) / (knots[index + 1] - knots[index])
-    return index, np.clip(share, 0.0, 1.0)
+        parts = [self._search(gradient)]
+        if mesh.dim == 2:
+            parts.append(self._search(self._unknowns.kinematics.hoop_stretch(u)) - 1)
+        return np.column_stack([*parts, np.zeros(len(parts[0]))])

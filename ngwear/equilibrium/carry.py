@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.contact import Contact
+from ngwear.effects.contact_patch import PatchContact
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
@@ -27,7 +28,7 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     outside), contact pressures from the two nearest old nodes of the outline, travels of rigid bodies as they
     are. Both problems must have the same unknowns.
     """
-    search = PointSearch(old.body.mesh, old.body.deformation, _node_places(new))
+    search = PointSearch(old.body.mesh, _node_places(new), old.body.deformation)
     near = {after.name: _neighbours(before, after) for before, after in _contact_pairs(old, new)}
     keep = old.state.vec.FV().NumPy().copy()
     carried = []
@@ -36,11 +37,7 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         out = new.state.vec.CreateVector()
         out[:] = 0.0
         target = out.FV().NumPy()
-        nodes = search(old.fields[DISPLACEMENT])
-        where = new.part(DISPLACEMENT)
-        target[where] = np.concatenate([nodal.join(nodes[:, k], new.body.edges) for k in range(2)])
-        stress = search(old.fields[VOLUMETRIC_STRESS])[: new.body.mesh.nv, 0]
-        target[new.part(VOLUMETRIC_STRESS)] = stress
+        _take_inside(search, old, new, target)
         for before, after in _contact_pairs(old, new):
             index, weight, same, twin = near[after.name]
             ends = (before.profile().nominal_pressure[index] * weight).sum(axis=-1)
@@ -53,6 +50,25 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         carried.append(new.state.vec.FV().NumPy().copy())
     old.state.vec.FV().NumPy()[:] = keep
     return carried
+
+
+def carry_solid(old: Problem, new: Problem) -> None:
+    """Take the state of a solid, and of the patch pressed on it, to another mesh of the same solid; a first guess."""
+    target = new.state.vec.FV().NumPy()
+    _take_inside(PointSearch(old.body.mesh, _node_places(new)), old, new, target)
+    before, after = ([t for t in p.terms if isinstance(t, PatchContact)] for p in (old, new))
+    for was, contact in zip(before, after, strict=True):
+        contact.take_pressure(was)
+        if contact.force_controlled:
+            new.fields[contact.travel_name].vec.data = old.fields[was.travel_name].vec
+
+
+def _take_inside(search: PointSearch, old: Problem, new: Problem, target: Array) -> None:
+    """Displacement and volumetric stress at the nodes of ``new``, into a vector of its unknowns."""
+    body = new.body
+    nodes = search(old.fields[DISPLACEMENT])
+    target[new.part(DISPLACEMENT)] = np.concatenate([nodal.join(values, body.edges) for values in nodes.T])
+    target[new.part(VOLUMETRIC_STRESS)] = search(old.fields[VOLUMETRIC_STRESS])[: body.mesh.nv, 0]
 
 
 def _unfold(problem: Problem) -> None:
@@ -98,7 +114,7 @@ def _node_places(problem: Problem) -> Array:
     space = ng.H1(mesh, order=2)
     field = ng.GridFunction(space)
     columns = []
-    for coordinate in (ng.x, ng.y):
+    for coordinate in (ng.x, ng.y, ng.z)[: mesh.dim]:
         field.Set(coordinate)
         columns.append(nodal.split(field.vec.FV().NumPy(), problem.body.edges))
     return np.stack(columns, axis=1)

@@ -10,7 +10,7 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE, norm
 from ngwear.equilibrium.problem import Problem
 
@@ -84,7 +84,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
         term.prepare()
     start = problem.state.vec.CreateVector()
     start.data = problem.state.vec
-    contacts = [term for term in problem.terms if isinstance(term, Contact)]
+    contacts = [term for term in problem.terms if isinstance(term, UnilateralContact)]
     wasted = 0
     for softness in SOFTNESS if contacts else SOFTNESS[:1]:
         for contact in contacts:
@@ -102,8 +102,8 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
 
 
 def _iterate(problem: Problem, options: NewtonOptions) -> Report:
-    contacts = [term for term in problem.terms if isinstance(term, Contact)]
-    size = float(np.ptp(problem.body.contour.points, axis=0).max())
+    contacts = [term for term in problem.terms if isinstance(term, UnilateralContact)]
+    size = problem.body.size
     u = problem.part(DISPLACEMENT)
     pressures = [problem.part(contact.pressure_name) for contact in contacts]
     vector = problem.state.vec

@@ -17,7 +17,7 @@ from ngwear.equilibrium.linear import DirectSolver, Tangent
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.material_points import MaterialPoints
-from ngwear.geometry.body import Body
+from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 THREADED_FROM = 60_000  # unknowns; below, two threads take more time waking each other than they save
@@ -34,13 +34,14 @@ class Support:
     Parameters
     ----------
     edges : tuple of str
-    x, y : bool
+    x, y, z : bool
         Whether the component is held at zero.
     """
 
     edges: tuple[str, ...]
     x: bool = True
     y: bool = True
+    z: bool = True
 
 
 class Problem:
@@ -48,7 +49,7 @@ class Problem:
 
     Parameters
     ----------
-    body : Body
+    body : Meshed
     kinematics : Kinematics
     terms : sequence of Term
         Only what is listed exists: no unknown, memory or zero term of anything else.
@@ -59,7 +60,7 @@ class Problem:
 
     def __init__(
         self,
-        body: Body,
+        body: Meshed,
         kinematics: Kinematics,
         terms: Sequence[Term],
         *,
@@ -67,7 +68,9 @@ class Problem:
         order: int = 2,
     ) -> None:
         self.body, self.kinematics, self.terms = body, kinematics, tuple(terms)
-        held = {axis: "|".join(e for s in supports if getattr(s, axis) for e in s.edges) for axis in "xy"}
+        held = {
+            axis: "|".join(e for s in supports if getattr(s, axis) for e in s.edges) for axis in "xyz"[: body.mesh.dim]
+        }
         for support in supports:
             body.boundary(support.edges)
         flags = {f"dirichlet{axis}": names for axis, names in held.items() if names}

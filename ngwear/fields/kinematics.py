@@ -1,4 +1,4 @@
-"""Plane strain and axisymmetry: how a displacement of the section becomes strain, area and volume."""
+"""Plane strain, axisymmetry and solids: how a displacement becomes strain, area and volume."""
 
 from __future__ import annotations
 
@@ -10,10 +10,10 @@ import ngsolve as ng
 
 
 class Kinematics(abc.ABC):
-    """Strain measures of a section with displacement u = (u_x, u_y) and hoop stretch.
+    """Strain measures of a part with displacement u, of a section also with a hoop stretch.
 
-    All quantities are per reference measure; integrals over the section or its outline carry ``weight``:
-    1 for plane strain (per mm of thickness), 2 pi R for axisymmetry.
+    All quantities are per reference measure; integrals over the part or its surface carry ``weight``:
+    1 for a solid and for plane strain (per mm of thickness), 2 pi R for axisymmetry.
     """
 
     axisymmetric: bool
@@ -23,9 +23,9 @@ class Kinematics(abc.ABC):
     def weight(self) -> Any:
         """Reference thickness: 1 [-], or the circumference 2 pi R [mm]."""
 
-    @abc.abstractmethod
     def hoop_stretch(self, u: Any) -> Any:
         """Stretch out of the section's plane: 1, or 1 + u_r / R."""
+        return ng.CF(1.0)
 
     def area_vector(self, u: Any, trace_grad_u: Any) -> Any:
         """Spatial outward normal times da/dA on the outline (Nanson), shape (2,).
@@ -51,8 +51,22 @@ class PlaneStrain(Kinematics):
     def weight(self) -> Any:
         return ng.CF(1.0)
 
-    def hoop_stretch(self, u: Any) -> Any:
+
+class Solid(Kinematics):
+    """Three dimensions."""
+
+    axisymmetric = False
+
+    @property
+    def weight(self) -> Any:
         return ng.CF(1.0)
+
+    def area_vector(self, u: Any, trace_grad_u: Any) -> Any:
+        n = ng.specialcf.normal(3)
+        across = [ng.CF((0, -n[2], n[1])), ng.CF((n[2], 0, -n[0])), ng.CF((-n[1], n[0], 0))]
+        x, y, z = (t + trace_grad_u * t for t in across)  # F (n x e_k): tangents, all that the trace knows
+        # cof F ((n x e_a) x (n x e_b)) = n_c cof F n for cyclic a, b, c.
+        return n[0] * ng.Cross(y, z) + n[1] * ng.Cross(z, x) + n[2] * ng.Cross(x, y)
 
 
 class Axisymmetric(Kinematics):

@@ -1,4 +1,4 @@
-"""The integration points of a section: strain there from the unknowns, nodal forces and stiffness back.
+"""The integration points of a part: strain there from the unknowns, nodal forces and stiffness back.
 
 All points are treated at once, as arrays. A symbolic energy in NGSolve is evaluated element by element once
 for each pair of strain components: five times the time for the same numbers (``tests/unit/test_material_points.py``
@@ -14,23 +14,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.fields.kinematics import Kinematics
-from ngwear.geometry.body import Body
+from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-STRAINS = 6  # F_xx - 1, F_xy, F_yx, F_yy - 1, hoop stretch - 1 (0 in plane strain), volumetric stress
+CELLS = {2: ng.TRIG, 3: ng.TET}
+EXACT = {2: 2.0, 3: 1.0}  # order of the rule over that of the displacement: 4 points suffice in a tetrahedron
 
 
 class MaterialPoints:
     """Strains at the points, and their transpose.
 
-    The strain of a point is ``(F_xx - 1, F_xy, F_yx, F_yy - 1, hoop - 1, p)`` with F the deformation gradient of
-    the section and p the volumetric stress [MPa]. It is linear in the unknowns; the matrix B of that map and
-    the reference volumes follow the body's outline as it moves.
+    The strain of a point of a section is ``(F_xx - 1, F_xy, F_yx, F_yy - 1, hoop - 1, p)`` with F the deformation
+    gradient and p the volumetric stress [MPa]; of a solid, ``(F_xx - 1, F_xy, ..., F_zz - 1, p)``. It is linear in the
+    unknowns; the matrix B of that map and the reference volumes follow the body's outline as it moves.
 
     Parameters
     ----------
-    body : Body
+    body : Meshed
     kinematics : Kinematics
     order : int
         Polynomial order of the displacement; the volumetric stress has one less.
@@ -38,49 +39,54 @@ class MaterialPoints:
         Where both stand in the vector of unknowns.
     """
 
-    def __init__(self, body: Body, kinematics: Kinematics, *, order: int, displacement: slice, pressure: slice) -> None:
+    def __init__(
+        self, body: Meshed, kinematics: Kinematics, *, order: int, displacement: slice, pressure: slice
+    ) -> None:
         self.body, self.kinematics = body, kinematics
-        self._rule = rule = ng.IntegrationRule(ng.TRIG, 2 * order)
+        dim = self._dim = body.mesh.dim
+        self._rule = rule = ng.IntegrationRule(CELLS[dim], int(EXACT[dim] * order))
+        self.strains = dim * dim + (dim == 2) + 1
         self._points = body.mesh.MapToAllElements(rule, ng.VOL)
         self._rule_weights = np.array(rule.weights)
         moving, self._shapes, self._slopes = _shapes(body.mesh, order, rule)
         stressed, self._stress_shapes, _ = _shapes(body.mesh, order - 1, rule)
-        half = (displacement.stop - displacement.start) // 2
-        first = displacement.start
-        self.unknowns = np.concatenate([first + moving, first + half + moving, pressure.start + stressed], axis=1)
+        component = (displacement.stop - displacement.start) // dim
+        moved = [displacement.start + i * component + moving for i in range(dim)]
+        self.unknowns = np.concatenate([*moved, pressure.start + stressed], axis=1)
         self._measure()
 
     def follow(self) -> None:
         """Measure anew if the outline has moved."""
-        if self._contour is not self.body.contour:
+        if self._moves != self.body.moves:
             self._measure()
 
     def _measure(self) -> None:
-        self._contour = self.body.contour
+        self._moves = self.body.moves
         elements, points = self._slopes.shape[:2]
-        shape = (elements, points)
-        jacobian = np.asarray(ng.specialcf.JacobianMatrix(2)(self._points)).reshape(*shape, 2, 2)
+        shape, dim = (elements, points), self._dim
+        jacobian = np.asarray(ng.specialcf.JacobianMatrix(dim)(self._points)).reshape(*shape, dim, dim)
         slopes = self._slopes @ np.linalg.inv(jacobian)
         weight = np.broadcast_to(np.asarray(self.kinematics.weight(self._points)).reshape(-1), (elements * points,))
-        self._areas = self._rule_weights * np.abs(np.linalg.det(jacobian))
-        self.volumes = self._areas * weight.reshape(shape)
+        self._sizes = self._rule_weights * np.abs(np.linalg.det(jacobian))
+        self.volumes = self._sizes * weight.reshape(shape)
         n = self._slopes.shape[2]
-        B = np.zeros((*shape, STRAINS, self.unknowns.shape[1]))
-        B[:, :, 0, :n], B[:, :, 1, :n] = slopes[..., 0], slopes[..., 1]
-        B[:, :, 2, n : 2 * n], B[:, :, 3, n : 2 * n] = slopes[..., 0], slopes[..., 1]
+        B = np.zeros((*shape, self.strains, self.unknowns.shape[1]))
+        for i in range(dim):
+            for j in range(dim):
+                B[:, :, dim * i + j, i * n : (i + 1) * n] = slopes[..., j]
         self.radius: Array | None = None
         if self.kinematics.axisymmetric:
             self.radius = np.asarray(ng.y(self._points)).reshape(shape)
             B[:, :, 4, n : 2 * n] = self._shapes / self.radius[..., None]
-        B[:, :, 5, 2 * n :] = self._stress_shapes
+        B[:, :, -1, dim * n :] = self._stress_shapes
         self._B = B
-        self._flat = B.reshape(elements, points * STRAINS, -1)
+        self._flat = B.reshape(elements, points * self.strains, -1)
         weighted = (B * self.volumes[..., None, None]).reshape(self._flat.shape)
         self._transposed = np.ascontiguousarray(weighted.swapaxes(1, 2))  # times the volumes
 
     def strain(self, vector: Array) -> Array:
-        """Strains of a vector of unknowns, shape (elements, points, 6)."""
-        return (self._flat @ vector[self.unknowns][:, :, None]).reshape(*self.volumes.shape, STRAINS)
+        """Strains of a vector of unknowns, shape (elements, points, strains)."""
+        return (self._flat @ vector[self.unknowns][:, :, None]).reshape(*self.volumes.shape, self.strains)
 
     def forces(self, stress: Array) -> Array:
         """Element vectors of a stress conjugate to the strain per reference volume; shape (elements, unknowns)."""
@@ -88,25 +94,25 @@ class MaterialPoints:
 
     @property
     def places(self) -> Array:
-        """Reference coordinates of the points [mm], shape (elements, points, 2)."""
-        places = np.stack([np.asarray(c(self._points)) for c in (ng.x, ng.y)], axis=-1)
-        return places.reshape(*self.volumes.shape, 2)
+        """Reference coordinates of the points [mm], shape (elements, points, dim)."""
+        places = np.stack([np.asarray(c(self._points)) for c in (ng.x, ng.y, ng.z)[: self._dim]], axis=-1)
+        return places.reshape(*self.volumes.shape, self._dim)
 
     @property
     def centres(self) -> Array:
-        """Centres of the elements [mm], shape (elements, 2)."""
+        """Centres of the elements [mm], shape (elements, dim)."""
         return self.places.mean(axis=1)
 
     @property
     def edges(self) -> Array:
         """Edge of the equilateral triangle of each element's area [mm], shape (elements,)."""
-        return np.sqrt(4 / np.sqrt(3) * self._areas.sum(axis=1))
+        return np.sqrt(4 / np.sqrt(3) * self._sizes.sum(axis=1))
 
     def recovered(self, values: Array) -> Array:
         """Values at the points, shape (elements, points, k), smoothed: averaged to the vertices and interpolated."""
         vertices, shapes, fit = self._corners
         plane = fit @ values
-        area = self._areas.sum(axis=1)
+        area = self._sizes.sum(axis=1)
         total = np.zeros((self.body.mesh.nv, values.shape[-1]))
         weight = np.bincount(vertices.ravel(), np.repeat(area, 3), minlength=len(total))
         for k in range(values.shape[-1]):
@@ -120,14 +126,14 @@ class MaterialPoints:
         return vertices, shapes, np.linalg.pinv(shapes)
 
     def stiffness(self, tangent: Array) -> Array:
-        """Element matrices of d stress / d strain, shape (elements, points, 6, 6); shape (elements, n, n)."""
+        """Element matrices, shape (elements, n, n), of d stress / d strain, (elements, points, strains, strains)."""
         return self._transposed @ (tangent @ self._B).reshape(self._flat.shape)
 
 
 def _shapes(mesh: ng.Mesh, order: int, rule: ng.IntegrationRule) -> tuple[Index, Array, Array]:
     """Unknowns of each element in a scalar space, and its shape functions and their slopes at the rule's points.
 
-    Shapes (elements, n), (elements, points, n) and (elements, points, n, 2), on the reference triangle. They
+    Shapes (elements, n), (elements, points, n) and (elements, points, n, dim), on the reference element. They
     depend on the order of an element's vertex numbers only.
     """
     space = ng.H1(mesh, order=order)
@@ -138,6 +144,6 @@ def _shapes(mesh: ng.Mesh, order: int, rule: ng.IntegrationRule) -> tuple[Index,
     values, slopes = {}, {}
     for rank, i in kinds.items():
         element = space.GetFE(elements[i])
-        values[rank] = np.array([element.CalcShape(*p) for p in np.array(rule.points)[:, :2]])
-        slopes[rank] = np.array([np.array(element.CalcDShape(*p)) for p in np.array(rule.points)[:, :2]])
+        values[rank] = np.array([element.CalcShape(*p) for p in np.array(rule.points)[:, : mesh.dim]])
+        slopes[rank] = np.array([np.array(element.CalcDShape(*p)) for p in np.array(rule.points)[:, : mesh.dim]])
     return unknowns, np.array([values[r] for r in ranks]), np.array([slopes[r] for r in ranks])

@@ -16,17 +16,17 @@ class PointSearch:
     Parameters
     ----------
     mesh : ng.Mesh
-    deformation : GridFunction
-        Displacement from the mesh as built to the present section [mm].
-    points : array, shape (n, 2)
-        Points of the present section.
+    points : array, shape (n, dim)
+        Points of the present part.
+    deformation : GridFunction or None
+        Displacement from the mesh as built to the present part [mm].
     """
 
-    def __init__(self, mesh: ng.Mesh, deformation: ng.GridFunction, points: Array) -> None:
+    def __init__(self, mesh: ng.Mesh, points: Array, deformation: ng.GridFunction | None = None) -> None:
         active = mesh.deformation
         mesh.UnsetDeformation()
         place = np.array(points, dtype=float)
-        for _ in range(3):
+        for _ in range(3 if deformation is not None else 0):
             self.mapped = _inside(mesh, place)
             moved = np.asarray(deformation(self.mapped))
             place = points - moved
@@ -40,7 +40,7 @@ class PointSearch:
 
 
 def _inside(mesh: ng.Mesh, points: Array) -> NDArray:
-    mapped = mesh(points[:, 0], points[:, 1])
+    mapped = mesh(*points.T)
     lost = np.flatnonzero(mapped["nr"] < 0)
     if len(lost) == 0:
         return mapped
@@ -48,7 +48,7 @@ def _inside(mesh: ng.Mesh, points: Array) -> NDArray:
     _, nearest = cKDTree(centres).query(points[lost])
     for pull in (1e-4, 1e-3, 1e-2, 0.05, 0.2, 0.5, 1.0):
         trial = points[lost] + pull * (centres[nearest] - points[lost])
-        found = mesh(trial[:, 0], trial[:, 1])
+        found = mesh(*trial.T)
         hit = found["nr"] >= 0
         mapped[lost[hit]] = found[hit]
         lost, nearest = lost[~hit], nearest[~hit]
@@ -58,6 +58,7 @@ def _inside(mesh: ng.Mesh, points: Array) -> NDArray:
 
 
 def _centres(mesh: ng.Mesh) -> Array:
-    coordinates = np.array(mesh.ngmesh.Coordinates()[:, :2])
-    triangles = mesh.ngmesh.Elements2D().NumPy()["nodes"][:, :3].astype(int) - 1
-    return coordinates[triangles].mean(axis=1)
+    coordinates = np.array(mesh.ngmesh.Coordinates()[:, : mesh.dim])
+    elements = mesh.ngmesh.Elements2D() if mesh.dim == 2 else mesh.ngmesh.Elements3D()
+    corners = elements.NumPy()["nodes"][:, : mesh.dim + 1].astype(int) - 1
+    return coordinates[corners].mean(axis=1)

@@ -13,6 +13,7 @@ from ngwear.errors import MeshError
 from ngwear.geometry import nodal, section
 from ngwear.geometry.contour import Array, Contour
 from ngwear.geometry.harmonic import HarmonicFill
+from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 
@@ -44,7 +45,7 @@ class Outline:
         return np.flatnonzero(np.isin(self.names, edges))
 
 
-class Body:
+class Body(Meshed):
     """A meshed section whose outline can move a little without a new mesh.
 
     ``base`` is the outline that was meshed, ``contour`` the present one: it has the same points,
@@ -73,7 +74,6 @@ class Body:
 
     def _set_up(self) -> None:
         self.outline = _outline(self.mesh, self.base)
-        self.edges = nodal.edge_vertices(self.mesh)
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=2))
 
     def __getstate__(self) -> dict[str, object]:
@@ -125,6 +125,7 @@ class Body:
             field.vec.FV().NumPy()[:] = before
             raise MeshError(f"moving the mesh with the outline would shrink an element to {lowest:.2f} of its size")
         self.contour = contour
+        self.moves += 1
         self._deform()
 
     def _deform(self) -> None:
@@ -141,17 +142,9 @@ class Body:
         self._deform()
         return lowest
 
-    @cached_property
-    def region_names(self) -> tuple[str, ...]:
-        """Edge names that the mesh knows."""
-        return tuple(self.mesh.GetBoundaries())
-
-    def boundary(self, edges: tuple[str, ...]) -> ng.Region:
-        """Return the region of the named edges; MeshError names an edge that the mesh does not have."""
-        missing = [name for name in edges if name not in self.region_names]
-        if missing:
-            raise MeshError(f"the mesh has no edges {missing}; it has {sorted(set(self.region_names))}")
-        return self.mesh.Boundaries("|".join(edges))
+    @property
+    def size(self) -> float:
+        return float(np.ptp(self.contour.points, axis=0).max())
 
 
 def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:

@@ -17,6 +17,7 @@ from ngwear.equilibrium.steady import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import Work, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.fields.kinematics import PlaneStrain
+from ngwear.fields.stream import StreamGrid
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.sizing import SizeField
@@ -210,7 +211,7 @@ def _solve(
     cylinder = Cylinder(centre=(0.0, depth + asperity.radius), radius=asperity.radius)
     material = asperity.material
     contact = Contact("cylinder", ("top",), cylinder, force_controlled=True, modulus=material.shear_modulus)
-    memory = SteadyMemory(material, asperity.series, columns=columns, rows=rows)
+    memory = SteadyMemory(material, asperity.series, StreamGrid(columns, (rows,)))
     supports = [Support(("bottom",)), Support(("left", "right"), y=False)]
     problem = Problem(body, PlaneStrain(), [Elasticity(material), memory, contact], supports=supports)
     travel = problem.fields[contact.travel_name].vec

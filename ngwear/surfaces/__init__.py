@@ -3,5 +3,6 @@
 from ngwear.surfaces.base import RigidSurface
 from ngwear.surfaces.cylinder import Cylinder
 from ngwear.surfaces.plane import Plane
+from ngwear.surfaces.sphere import Sphere
 
-__all__ = ["Cylinder", "Plane", "RigidSurface"]
+__all__ = ["Cylinder", "Plane", "RigidSurface", "Sphere"]

@@ -11,24 +11,24 @@ from typing import Any
 class RigidSurface(abc.ABC):
     """A rigid body given by its signed distance: positive outside it, where the rubber may be.
 
-    Points are pairs (x, y) of floats, arrays or coefficient functions; in an axisymmetric scene x is
-    the axial and y the radial coordinate. Surfaces know no mesh.
+    A place is two coordinates (x, y), of a solid three, as floats, arrays or coefficient functions; in an
+    axisymmetric scene x is the axial and y the radial coordinate. Surfaces know no mesh.
     """
 
     @abc.abstractmethod
-    def gap(self, x: Any, y: Any) -> Any:
-        """Signed distance of (x, y) from the surface [mm]."""
+    def gap(self, *place: Any) -> Any:
+        """Signed distance of a place from the surface [mm]."""
 
     @abc.abstractmethod
-    def normal(self, x: Any, y: Any) -> tuple[Any, Any]:
-        """Unit normal at the foot of (x, y), pointing out of the rigid body: the gradient of the gap."""
+    def normal(self, *place: Any) -> tuple[Any, ...]:
+        """Unit normal at the foot of a place, pointing out of the rigid body: the gradient of the gap."""
 
     @property
     @abc.abstractmethod
-    def approach(self) -> tuple[float, float]:
+    def approach(self) -> tuple[float, ...]:
         """Unit direction in which the body is pushed into the rubber."""
 
-    def tangent(self, x: Any, y: Any) -> tuple[Any, Any]:
+    def tangent(self, *place: Any) -> tuple[Any, ...]:
         """Unit tangent: the normal turned clockwise, so that a normal (0, 1) has the tangent (1, 0)."""
-        nx, ny = self.normal(x, y)
+        nx, ny = self.normal(*place)
         return ny, -1 * nx

@@ -1,0 +1,108 @@
+"""Contact on a face of a solid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.base import DISPLACEMENT, Unknowns
+from ngwear.effects.unilateral import COORDINATES, UnilateralContact
+from ngwear.geometry.meshed import Meshed
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Faces:
+    """What a contact looks like on the mesh's faces.
+
+    Attributes
+    ----------
+    corners : array, shape (n, 3, 3)
+        Deformed coordinates of the corners [mm].
+    reference : array, shape (n, 3)
+        Reference coordinates of the centres [mm].
+    pressure : array, shape (n,)
+        Cauchy pressure [MPa].
+    """
+
+    corners: Array
+    reference: Array
+    pressure: Array
+
+
+class PatchContact(UnilateralContact):
+    """Contact on named faces of a solid; the nominal pressure is constant on each mesh face.
+
+    With displacements of order 2 a linear pressure, whether continuous or not, does worse: continuous it rings over
+    several elements beyond the contact's edge, discontinuous it has three unknowns a triangle where the displacement
+    has two, and does not converge.
+    """
+
+    def pressure_space(self, body: Meshed) -> ng.FESpace:
+        return ng.Compress(ng.SurfaceL2(body.mesh, order=0, definedon=body.boundary(self.edges)))
+
+    def lengths(self, body: Meshed) -> ng.GridFunction:
+        space = ng.SurfaceL2(body.mesh, order=0)
+        field = ng.GridFunction(space)
+        areas = np.array(ng.Integrate(ng.CF(1.0), body.mesh, ng.BND, element_wise=True))
+        dofs = [space.GetDofNrs(ng.ElementId(ng.BND, i))[0] for i in range(len(areas))]
+        field.vec.FV().NumPy()[dofs] = np.sqrt(areas)
+        return field
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        super().add_to(form, unknowns)
+        mesh, space = unknowns.body.mesh, self._state[self.pressure_name].space
+        rule = ng.IntegrationRule([(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1 / 3, 1 / 3)], [0.25] * 4)
+        self._points = mesh.MapToAllElements(rule, self._region)
+        numbers = self._points.reshape(-1, 4)["nr"][:, 0]
+        self._dofs = np.array([space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in numbers])
+
+    def _sample(self, field: ng.CoefficientFunction) -> Array:
+        """Values at three corners and the centre of each face, shape (n, 4)."""
+        return np.broadcast_to(np.asarray(field(self._points)).reshape(-1), (len(self._points),)).reshape(-1, 4)
+
+    def faces(self) -> Faces:
+        """Pressures and places of the present state."""
+        u = self._state[DISPLACEMENT]
+        deformed = np.stack([self._sample(c + u[i]) for i, c in enumerate(COORDINATES)], axis=-1)
+        centres = np.stack([self._sample(c)[:, 3] for c in COORDINATES], axis=-1)
+        stretch = self._sample(self._kinematics.area_stretch(u, ng.Grad(u)))[:, 3]
+        nominal = self._state[self.pressure_name].vec.FV().NumPy()[self._dofs]
+        return Faces(deformed[:, :3], centres, np.maximum(nominal, 0.0) / stretch)
+
+    def take_pressure(self, other: PatchContact) -> None:
+        """Start from the nominal pressure that another contact with the same faces, differently meshed, has."""
+        centres = [self._sample(c)[:, 3] for c in COORDINATES]
+        old = other._state[other.pressure_name]
+        there = other._body.mesh(*centres, ng.BND)
+        self._state[self.pressure_name].vec.FV().NumPy()[self._dofs] = np.asarray(old(there)).ravel()
+
+    def turning(self, traction: tuple[ng.CoefficientFunction, ...]) -> float:
+        """Moment about the track's axis of a traction per nominal pressure, over the track's radius [N].
+
+        The force along the track that would do the same work; on a straight track the resultant along x.
+        """
+        motion = self.surface.motion(*self.place(self._state))
+        return self._loaded(sum(t * m for t, m in zip(traction, motion, strict=True)))
+
+    def slipping(self, traction: tuple[ng.CoefficientFunction, ...]) -> float:
+        """Work of a traction per nominal pressure on the slip past it, over the length of the track [N].
+
+        The part's surface passes the pin at ``F V``, with V the motion of the reference surface: faster where it is
+        stretched.
+        """
+        motion = ng.CF(self.surface.motion(*COORDINATES))
+        passing = motion + ng.Grad(self._state[DISPLACEMENT]).Trace() * motion
+        return self._loaded(sum(t * passing[i] for i, t in enumerate(traction)))
+
+    def _loaded(self, density: ng.CoefficientFunction) -> float:
+        measure = ng.ds(definedon=self._region, bonus_intorder=2)
+        return ng.Integrate(self._state[self.pressure_name] * density * measure, self._body.mesh)
+
+    def resistance(self) -> float:
+        """Force along the track that the pressure puts on the part [N]."""
+        return self.turning(self.surface.normal(*self.place(self._state)))

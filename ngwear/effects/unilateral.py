@@ -1,0 +1,148 @@
+"""Unilateral contact with a rigid surface, wear as a compliance included."""
+
+from __future__ import annotations
+
+import abc
+from collections.abc import Sequence
+from typing import Any
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.geometry.meshed import Meshed
+from ngwear.surfaces import RigidSurface
+
+Array = NDArray[np.float64]
+COORDINATES = (ng.x, ng.y, ng.z)
+
+
+class UnilateralContact(Term):
+    """Contact pressure as an unknown on named edges: ``0 <= P  _|_  g(X + u) + kappa P / (da/dA) >= 0``.
+
+    P is the nominal (first Piola) pressure; g the signed distance from the surface. ``kappa = k ds`` is the
+    implicit Archard step of a specific wear rate k [mm²/N] over a sliding distance ds [mm]: the depth kappa P is
+    worn per reference area while the gap closes by kappa p with the Cauchy pressure p = P / (da/dA). The stretch
+    da/dA in the gap is that of the state from which the solve starts; the depth itself is exact.
+
+    The energy is the augmented Lagrangian ``1/(2c) [ max(0, P - c g)^2 / (1 + c kappa) - P^2 ]`` (Alart &
+    Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353, with the compliance added): symmetric, exact
+    for every c > 0, and semismooth under Newton.
+
+    A surface may move along its ``approach`` by the load ``"NAME approach [mm]"``; under force control
+    (``force_controlled=True``) that displacement is an unknown and the load is ``"NAME force [N]"`` (N per
+    mm of thickness in plane strain).
+
+    Parameters
+    ----------
+    name : str
+    edges : sequence of str
+        Names of the edges (faces of a solid) that may touch.
+    surface : RigidSurface
+    force_controlled : bool
+    modulus : float
+        Shear modulus G of the body [MPa]. With the length h of a mesh edge it sets the scales of the method,
+        not of the solution: ``1/c = softness h / (2 G) + kappa``, and a compliance of 1e-6 h / G (a closure of
+        1e-6 h at P = G) that keeps the pivots of the factorisation away from zero.
+
+    Attributes
+    ----------
+    softness : ng.Parameter
+        Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
+        it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        edges: Sequence[str],
+        surface: RigidSurface,
+        *,
+        force_controlled: bool = False,
+        modulus: float,
+    ) -> None:
+        super().__init__()
+        self.name, self.edges, self.surface = name, tuple(edges), surface
+        self.force_controlled = force_controlled
+        self.modulus = modulus
+        self.softness = ng.Parameter(1.0)
+        self.compliance = ng.Parameter(0.0)
+        self.load = ng.Parameter(0.0)
+        self._extent = ng.Parameter(1.0)  # of the whole surface as it is meshed and worn [mm, or mm²]
+        kind = "force [N]" if force_controlled else "approach [mm]"
+        self.loads = {f"{name} {kind}": self.load}
+
+    @property
+    def pressure_name(self) -> str:
+        """Name of the nominal pressure among the unknowns."""
+        return f"{self.name} pressure"
+
+    @property
+    def travel_name(self) -> str:
+        """Name of the surface's displacement among the unknowns, under force control."""
+        return f"{self.name} approach"
+
+    @abc.abstractmethod
+    def pressure_space(self, body: Meshed) -> ng.FESpace:
+        """Space of the nominal pressure on the named edges."""
+
+    @abc.abstractmethod
+    def lengths(self, body: Meshed) -> ng.GridFunction:
+        """Length of each surface element as it was made [mm]; constant on it, so that P adds up to what g asks."""
+
+    def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
+        spaces = {self.pressure_name: self.pressure_space(body)}
+        if self.force_controlled:
+            spaces[self.travel_name] = ng.NumberSpace(body.mesh)
+        return spaces
+
+    def place(self, fields: dict[str, Any]) -> tuple[Any, ...]:
+        """Coordinates of X + u in the frame of the moving surface, for trial functions or a state."""
+        u = fields[DISPLACEMENT]
+        travel = fields[self.travel_name] if self.force_controlled else self.load
+        approach = enumerate(self.surface.approach)
+        return tuple(COORDINATES[i] + u[i] - travel * a for i, a in approach)
+
+    def gap(self, fields: dict[str, Any]) -> Any:
+        """Signed distance of the deformed surface from the surface [mm]."""
+        return self.surface.gap(*self.place(fields))
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        body, kinematics = unknowns.body, unknowns.kinematics
+        self._body, self._region = body, body.boundary(self.edges)
+        self._state, self._kinematics = unknowns.state, kinematics
+        self._start = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
+        stretch = kinematics.area_stretch(self._start, ng.Grad(self._start))
+        give = self.lengths(body) / self.modulus
+        self._augmentation = c = 1 / (0.5 * self.softness * give + self.compliance)
+        p = unknowns.trial[self.pressure_name]
+        pushed = p - c * self.gap(unknowns.trial)
+        closure = 1 + c * (1e-6 * give + self.compliance / stretch)
+        active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
+        energy = (active - p * p) / (2 * c) * kinematics.weight
+        form += ng.Variation(energy.Compile() * ng.ds(definedon=self._region, bonus_intorder=2))
+        if self.force_controlled:
+            # A constant energy density over the whole surface adds up to - force * travel.
+            everywhere = body.mesh.Boundaries(".*")
+            travel = unknowns.trial[self.travel_name]
+            form += ng.Variation(-self.load * travel / self._extent * ng.ds(definedon=everywhere))
+        self._measure()
+
+    def force(self) -> Array:
+        """Resultant of the contact pressure on the rubber; [N], or N/mm in plane strain."""
+        p = self._state[self.pressure_name]
+        normal = self.surface.normal(*self.place(self._state))
+        measure = ng.ds(definedon=self._region, bonus_intorder=2)
+        weight = self._kinematics.weight
+        return np.array([ng.Integrate(p * n * weight * measure, self._body.mesh) for n in normal])
+
+    def prepare(self) -> None:
+        self._start.vec.data = self._state[DISPLACEMENT].vec
+        self._measure()
+
+    def _measure(self) -> None:
+        """Extent of the whole surface as the mesh has it now, curved and worn."""
+        if self.force_controlled:
+            everywhere = self._body.mesh.Boundaries(".*")
+            self._extent.Set(ng.Integrate(ng.CF(1.0) * ng.ds(definedon=everywhere), self._body.mesh))

@@ -1,0 +1,305 @@
+"""A pin on a plate: a ball runs along a circle on a bonded sheet of rubber that remembers (case C2)."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.contact_patch import Faces, PatchContact
+from ngwear.effects.elasticity import Elasticity
+from ngwear.effects.friction import FullSliding
+from ngwear.effects.steady_memory import SteadyMemory
+from ngwear.equilibrium.carry import carry_solid
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.steady import SteadyOptions, solve_steady
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
+from ngwear.errors import SceneError
+from ngwear.fields.kinematics import Solid
+from ngwear.fields.stream import StreamGrid
+from ngwear.geometry.sheet import Sheet
+from ngwear.materials import Hyperelastic, PronySeries
+from ngwear.sliding.patch import contact_edge
+from ngwear.surfaces import Sphere
+
+Array = NDArray[np.float64]
+ROUGH = 2e-3  # change of the history in the last round: the jumps of gradient from element to element do not settle
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """A rigid hemisphere pressed on a rubber sheet whose bottom is bonded to a rigid plate.
+
+    Parameters
+    ----------
+    material : Hyperelastic
+        Long-term behaviour.
+    series : PronySeries or None
+        Arms at the sheet's temperature; None leaves the rubber elastic.
+    radius : float
+        Of the ball [mm].
+    load : float
+        [N].
+    thickness : float
+        Of the sheet [mm].
+    track_radius : float
+        [mm]; infinite for a straight track.
+    sheet_radius : float
+        Outer radius of the sheet [mm]; with a circular track its centre is the track's.
+    friction : float
+        Coefficient of surface friction [-].
+
+    Raises
+    ------
+    SceneError
+        For a size or load that is not positive, or a track that leaves the sheet.
+    """
+
+    material: Hyperelastic
+    series: PronySeries | None
+    radius: float = 5.0
+    load: float = 100.0
+    thickness: float = 4.0
+    track_radius: float = 16.5
+    sheet_radius: float = 30.0
+    friction: float = 0.06
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "load", "thickness", "track_radius", "sheet_radius"):
+            if not getattr(self, name) > 0:
+                raise SceneError(f"pin.{name}", getattr(self, name), "must be greater than 0")
+        if not self.friction >= 0:
+            raise SceneError("pin.friction", self.friction, "must be at least 0")
+        needed = self.track_radius + 2 * self.contact_radius
+        if math.isfinite(self.track_radius) and needed > self.sheet_radius:
+            raise SceneError(
+                "pin.sheet_radius",
+                self.sheet_radius,
+                f"the track leaves the sheet: with a contact of about {self.contact_radius:.2g} mm around a track of "
+                f"{self.track_radius:g} mm take {needed:.3g} mm or more",
+            )
+
+    @property
+    def contact_radius(self) -> float:
+        """A guess between Hertz's contact on a half-space and that on a thin bonded layer [mm]."""
+        modulus = 4 * self.material.shear_modulus
+        hertz = (0.75 * self.load * self.radius / modulus) ** (1 / 3)
+        return hertz / (1 + (hertz / self.thickness) ** 2) ** 0.25
+
+
+@dataclass(frozen=True)
+class PinSlide:
+    """Steady sliding at one speed.
+
+    Attributes
+    ----------
+    speed : float
+        [mm/s].
+    surface_friction, internal_friction : float
+        Parts of the friction coefficient: from the friction on the surface, and from the pressure, which the rubber's
+        memory makes uneven [-]. Moments about the track's axis over its radius and the load.
+    slip_work : float
+        What the surface friction dissipates, over load and track [-]. More than the surface friction, as the stretched
+        rubber passes the pin faster than the track; the pressure's share of the friction pays for the rest.
+    dissipation : float
+        What the rubber dissipates, over load and track [-]. With the slip's work it makes the friction.
+    depth : float
+        Penetration [mm].
+    area : float
+        Of the contact as it lies on the ball [mm²], its edge found between the nodes.
+    edge : array, shape (n, 2)
+        The contact's edge seen from above [mm].
+    faces : Faces
+    elements : int
+    work : Work
+    cpu_seconds : float
+    """
+
+    speed: float
+    surface_friction: float
+    internal_friction: float
+    slip_work: float
+    dissipation: float
+    depth: float
+    area: float
+    edge: Array
+    faces: Faces
+    elements: int
+    work: Work
+    cpu_seconds: float
+
+    @property
+    def friction(self) -> float:
+        """The whole friction coefficient [-]."""
+        return self.surface_friction + self.internal_friction
+
+    @property
+    def peak(self) -> float:
+        """Highest Cauchy pressure [MPa]."""
+        return float(self.faces.pressure.max())
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinMesh:
+    """How fine: edges in the contact, far away [mm], and the grid's columns in the contact [mm].
+
+    ``behind``, ``ahead`` and ``beside`` are how far the block reaches, over the sheet's thickness.
+    """
+
+    patch: float = 0.5
+    coarse: float = 3.0
+    column: float = 0.2
+    behind: float = 3.5
+    ahead: float = 3.0
+    beside: float = 2.75
+
+
+class PinStage:
+    """One mesh under the pin, fine in a disc of the sheet's top, and the problem on it."""
+
+    def __init__(self, pin: Pin, mesh: PinMesh, disc: tuple[float, float, float]) -> None:
+        self.pin, self.mesh = pin, mesh
+        high = pin.thickness
+        seeds, sizes = _seeds(disc, mesh.patch, high)
+        self.body = Sheet(
+            thickness=high,
+            track_radius=pin.track_radius,
+            behind=mesh.behind * high,
+            ahead=mesh.ahead * high,
+            beside=mesh.beside * high,
+            seeds=seeds,
+            sizes=sizes,
+            coarse=mesh.coarse,
+        )
+        ball = Sphere(centre=(0.0, 0.0, high + pin.radius), radius=pin.radius, track_radius=pin.track_radius)
+        modulus = pin.material.shear_modulus
+        self.contact = PatchContact("pin", ("top",), ball, force_controlled=True, modulus=modulus)
+        self.elasticity = Elasticity(pin.material)
+        terms = [self.elasticity, self.contact]
+        self.friction = FullSliding(self.contact, pin.friction) if pin.friction > 0 else None
+        if self.friction is not None:
+            terms.append(self.friction)
+        self.memory = None
+        if pin.series is not None:
+            self.memory = SteadyMemory(pin.material, pin.series, self._grid(disc))
+            terms.append(self.memory)
+        self.problem = Problem(self.body, Solid(), terms, supports=[Support(("bottom",))])
+
+    def _grid(self, disc: tuple[float, float, float]) -> StreamGrid:
+        x, y, radius = disc
+        body, step = self.body, self.mesh.column
+        columns = _graded(-body.behind, body.ahead, x - 1.2 * radius, x + 1.2 * radius, step)
+        offsets = _graded(-body.beside, body.beside, y - 1.2 * radius, y + 1.2 * radius, 1.5 * step)
+        heights = body.thickness - _graded(0.0, body.thickness, 0.0, step, step)[::-1]
+        return StreamGrid(columns, (offsets, heights), body.track_radius)
+
+    @property
+    def depth(self) -> float:
+        """Penetration [mm]."""
+        return float(self.problem.fields[self.contact.travel_name].vec[0])
+
+    def press(self) -> Work:
+        """Bring the load on, the rubber elastic; from first touch."""
+        pin, travel = self.pin, self.problem.fields[self.contact.travel_name].vec
+        travel[0] = 0.01 * pin.radius
+        force = "pin force [N]"
+        self.problem.set_loads({force: 0.01 * pin.load})
+        work = relax(self.problem, StepOptions(first=0.25))
+        work.add(advance(self.problem, {force: pin.load}, StepOptions(first=0.05)))
+        return work
+
+    def slide(self, speed: float, options: SteadyOptions) -> Work:
+        """Find the steady state at a speed from the present one."""
+        self.problem.set_loads({"pin force [N]": self.pin.load})
+        wavelength = 4 * self.pin.contact_radius
+        self.memory.set_speed(speed, wavelength)
+        return solve_steady(self.problem, self.memory, options)
+
+    def disc(self) -> tuple[float, float, float]:
+        """Middle and radius of the reference disc that holds the contact [mm]."""
+        faces = self.contact.faces()
+        on = faces.reference[faces.pressure > 1e-3 * faces.pressure.max(), :2]
+        middle = 0.5 * (on.min(axis=0) + on.max(axis=0))
+        return float(middle[0]), float(middle[1]), float(np.linalg.norm(on - middle, axis=1).max())
+
+    def result(self, speed: float, work: Work, cpu: float) -> PinSlide:
+        """What there is to see."""
+        pin, contact = self.pin, self.contact
+        surface = slip = 0.0
+        if self.friction is not None:
+            tangent = contact.surface.tangent(*contact.place(self.problem.fields))
+            surface, slip = pin.friction * contact.turning(tangent), pin.friction * contact.slipping(tangent)
+        edge, area = contact_edge(contact)
+        return PinSlide(
+            speed=speed,
+            surface_friction=surface / pin.load,
+            slip_work=slip / pin.load,
+            internal_friction=contact.resistance() / pin.load,
+            dissipation=self.memory.drag() / pin.load if self.memory is not None else 0.0,
+            depth=self.depth,
+            area=area,
+            edge=edge,
+            faces=contact.faces(),
+            elements=self.body.mesh.ne,
+            work=work,
+            cpu_seconds=cpu,
+        )
+
+
+def slide_pin(
+    pin: Pin, speed: float, *, mesh: PinMesh | None = None, options: SteadyOptions | None = None
+) -> tuple[PinSlide, PinSlide]:
+    """Slide steadily on a coarse mesh, refine to the contact found there, and slide again; both, the fine one last.
+
+    The first mesh has elements 1.6 times as large, so that the two tell the mesh's error.
+
+    Raises
+    ------
+    SceneError
+        For a speed that is not positive or a rubber without memory.
+    ConvergenceError
+        If no steady state is found.
+    """
+    if not 0 < speed < math.inf:
+        raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest press the pin on")
+    if pin.series is None:
+        raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
+    mesh, options = mesh or PinMesh(), options or SteadyOptions(tolerance=ROUGH)
+    clock = time.process_time()
+    rough = replace(mesh, patch=1.6 * mesh.patch, column=1.6 * mesh.column)
+    coarse = PinStage(pin, rough, (0.0, 0.0, pin.contact_radius))
+    work = coarse.press()
+    work.add(coarse.slide(speed, options))
+    first = coarse.result(speed, work, time.process_time() - clock)
+    fine = PinStage(pin, mesh, coarse.disc())
+    carry_solid(coarse.problem, fine.problem)
+    work = fine.slide(speed, options)
+    return first, fine.result(speed, work, time.process_time() - clock)
+
+
+def _seeds(disc: tuple[float, float, float], size: float, high: float) -> tuple[Array, Array]:
+    """Places on and under a disc of the top, and the element edges asked for there: twice as long in the depth."""
+    x, y, radius = disc
+    seeds, sizes = [], []
+    for depth, edge, reach in ((0.0, size, 1.15), (0.3, 1.6 * size, 1.0), (0.6, 2.0 * size, 1.0)):
+        ticks = np.arange(-reach * radius, reach * radius + edge / 2, edge)
+        grid = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)
+        inside = grid[np.linalg.norm(grid, axis=1) <= reach * radius] + (x, y)
+        seeds.append(np.column_stack([inside, np.full(len(inside), (1 - depth) * high)]))
+        sizes.append(np.full(len(inside), edge))
+    return np.vstack(seeds), np.concatenate(sizes)
+
+
+def _graded(start: float, stop: float, left: float, right: float, step: float) -> Array:
+    """Places from start to stop, ``step`` apart between left and right and further apart beyond, rising."""
+    middle = np.linspace(left, right, max(2, round((right - left) / step) + 1))
+    back, ahead = [left], [right]
+    while back[-1] > start:
+        back.append(back[-1] - step - 0.25 * (left - back[-1]))
+    while ahead[-1] < stop:
+        ahead.append(ahead[-1] + step + 0.25 * (ahead[-1] - right))
+    back[-1], ahead[-1] = min(start, left), max(stop, right)
+    return np.unique(np.concatenate([back, middle, ahead]))
