@@ -146,15 +146,14 @@ class PinSlide:
 class PinMesh:
     """How fine: edges in the contact, far away [mm], and the grid's columns in the contact [mm].
 
-    ``behind``, ``ahead`` and ``beside`` are how far the block reaches, over the sheet's thickness.
+    ``reach`` and ``beside`` are how far the block reaches along the track and across it, over the sheet's thickness.
     """
 
     patch: float = 0.5
     coarse: float = 3.0
     column: float = 0.2
-    behind: float = 3.5
-    ahead: float = 3.0
-    beside: float = 2.75
+    reach: float = 5.0
+    beside: float = 3.5
 
 
 class PinStage:
@@ -167,8 +166,7 @@ class PinStage:
         self.body = Sheet(
             thickness=high,
             track_radius=pin.track_radius,
-            behind=mesh.behind * high,
-            ahead=mesh.ahead * high,
+            reach=mesh.reach * high,
             beside=mesh.beside * high,
             seeds=seeds,
             sizes=sizes,
@@ -191,9 +189,9 @@ class PinStage:
     def _grid(self, disc: tuple[float, float, float]) -> StreamGrid:
         x, y, radius = disc
         body, step = self.body, self.mesh.column
-        columns = _graded(-body.behind, body.ahead, x - 1.2 * radius, x + 1.2 * radius, step)
-        offsets = _graded(-body.beside, body.beside, y - 1.2 * radius, y + 1.2 * radius, 1.5 * step)
-        heights = body.thickness - _graded(0.0, body.thickness, 0.0, step, step)[::-1]
+        columns = _graded(-body.reach, body.reach, x - 1.2 * radius, x + 1.2 * radius, step)
+        offsets = _graded(-body.beside, body.beside, y - 1.2 * radius, y + 1.2 * radius, step)
+        heights = np.linspace(0.0, body.thickness, round(body.thickness / (1.2 * step)) + 1)
         return StreamGrid(columns, (offsets, heights), body.track_radius)
 
     @property
