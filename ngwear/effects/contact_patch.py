@@ -74,6 +74,12 @@ class PatchContact(UnilateralContact):
         nominal = self._state[self.pressure_name].vec.FV().NumPy()[self._dofs]
         return Faces(deformed[:, :3], centres, np.maximum(nominal, 0.0) / stretch)
 
+    def at(self, places: Array) -> tuple[Array, Array]:
+        """Gaps [mm] and deformed coordinates at places of the reference faces, both (n, 3) [mm]."""
+        points = self._body.mesh(*places.T, ng.BND)
+        moved = places + np.asarray(self._state[DISPLACEMENT](points))
+        return np.asarray(self.gap(self._state)(points)).ravel(), moved
+
     def take_pressure(self, other: PatchContact) -> None:
         """Start from the nominal pressure that another contact with the same faces, differently meshed, has."""
         centres = [self._sample(c)[:, 3] for c in COORDINATES]

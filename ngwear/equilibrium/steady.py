@@ -45,6 +45,7 @@ def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions 
     tried: deque[np.ndarray] = deque(maxlen=options.memory + 1)
     missed: deque[np.ndarray] = deque(maxlen=options.memory + 1)
     volumes = np.sqrt(problem.points.volumes)[..., None]
+    memory.history = memory.follow(problem.points.strain(problem.state.vec.FV().NumPy()))
     for _ in range(options.max_rounds):
         report = settle(problem, StepOptions(), work)
         if not report.converged:

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import ngsolve as ng
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact_patch import PatchContact
 
 Array = NDArray[np.float64]
@@ -14,14 +14,33 @@ RAYS = 72
 NEAR, FAR = 0.004, 0.03  # gaps over the ball's radius between which the edge is extrapolated
 
 
-def contact_edge(contact: PatchContact) -> tuple[Array, float]:
-    """Edge of a ball's contact from above, shape (72, 2) [mm], and the contact's area on the ball [mm²].
+@dataclass(frozen=True)
+class Patch:
+    """A ball's contact.
+
+    Attributes
+    ----------
+    edge : array, shape (72, 2)
+        From above, as deformed [mm].
+    area : float
+        As it lies on the ball [mm²].
+    reference_area : float
+        Of the undeformed surface that touches [mm²].
+    """
+
+    edge: Array
+    area: float
+    reference_area: float
+
+
+def contact_patch(contact: PatchContact) -> Patch:
+    """Edge and area of a ball's contact.
 
     Outside a contact the gap grows with the power 3/2 of the distance: along rays from the contact's middle
     gap^(2/3) is a straight line, and its zero is the edge. An area counted by elements or integration points is
     quantised.
     """
-    faces, fields = contact.faces(), contact._state
+    faces = contact.faces()
     loaded = faces.pressure > 1e-3 * faces.pressure.max()
     middle = faces.reference[loaded, :2].mean(axis=0)
     height = faces.reference[0, 2]
@@ -30,19 +49,22 @@ def contact_edge(contact: PatchContact) -> tuple[Array, float]:
     angles = 2 * np.pi * np.arange(RAYS) / RAYS
     direction = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     places = (middle + lengths[None, :, None] * direction[:, None]).reshape(-1, 2)
-    points = contact._body.mesh(*places.T, np.full(len(places), height), ng.BND)
-    gap = np.asarray(contact.gap(fields)(points)).reshape(RAYS, -1)
-    moved = places + np.asarray(fields[DISPLACEMENT](points))[:, :2]
-    moved = moved.reshape(RAYS, -1, 2)
-    radius, edge = contact.surface.radius, np.empty((RAYS, 2))
+    gap, moved = contact.at(np.column_stack([places, np.full(len(places), height)]))
+    gap, moved = gap.reshape(RAYS, -1), moved[:, :2].reshape(RAYS, -1, 2)
+    radius, edge, reference = contact.surface.radius, np.empty((RAYS, 2)), np.empty(RAYS)
     for k in range(RAYS):
         last = np.flatnonzero(gap[k] < NEAR * radius)[-1]
         use = (np.arange(len(lengths)) > last) & (gap[k] < FAR * radius)
         slope, start = np.polyfit(lengths[use], gap[k, use] ** (2 / 3), 1)
-        found = -start / slope
-        edge[k] = [np.interp(found, lengths, moved[k, :, i]) for i in range(2)]
+        reference[k] = -start / slope
+        edge[k] = [np.interp(reference[k], lengths, moved[k, :, i]) for i in range(2)]
     from_axis = edge - np.array(contact.surface.centre[:2])
     turn = np.unwrap(np.arctan2(*from_axis.T[::-1]))
     cap = radius**2 * (1 - np.sqrt(1 - (from_axis**2).sum(axis=1) / radius**2))
     step = np.diff(np.append(turn, turn[0] + 2 * np.pi))
-    return edge, float((0.5 * (cap + np.roll(cap, -1)) * step).sum())
+    sector = 0.5 * np.sin(2 * np.pi / RAYS)
+    return Patch(
+        edge=edge,
+        area=float((0.5 * (cap + np.roll(cap, -1)) * step).sum()),
+        reference_area=float(sector * (reference * np.roll(reference, -1)).sum()),
+    )

@@ -22,7 +22,7 @@ from ngwear.fields.kinematics import Solid
 from ngwear.fields.stream import StreamGrid
 from ngwear.geometry.sheet import Sheet
 from ngwear.materials import Hyperelastic, PronySeries
-from ngwear.sliding.patch import contact_edge
+from ngwear.sliding.patch import Patch, contact_patch
 from ngwear.surfaces import Sphere
 
 Array = NDArray[np.float64]
@@ -108,11 +108,10 @@ class PinSlide:
         What the rubber dissipates, over load and track [-]. With the slip's work it makes the friction.
     depth : float
         Penetration [mm].
-    area : float
-        Of the contact as it lies on the ball [mm²], its edge found between the nodes.
-    edge : array, shape (n, 2)
-        The contact's edge seen from above [mm].
+    patch : Patch
+        The contact's edge and area.
     faces : Faces
+        Pressures.
     elements : int
     work : Work
     cpu_seconds : float
@@ -124,8 +123,7 @@ class PinSlide:
     slip_work: float
     dissipation: float
     depth: float
-    area: float
-    edge: Array
+    patch: Patch
     faces: Faces
     elements: int
     work: Work
@@ -230,7 +228,6 @@ class PinStage:
         if self.friction is not None:
             tangent = contact.surface.tangent(*contact.place(self.problem.fields))
             surface, slip = pin.friction * contact.turning(tangent), pin.friction * contact.slipping(tangent)
-        edge, area = contact_edge(contact)
         return PinSlide(
             speed=speed,
             surface_friction=surface / pin.load,
@@ -238,8 +235,7 @@ class PinStage:
             internal_friction=contact.resistance() / pin.load,
             dissipation=self.memory.drag() / pin.load if self.memory is not None else 0.0,
             depth=self.depth,
-            area=area,
-            edge=edge,
+            patch=contact_patch(contact),
             faces=contact.faces(),
             elements=self.body.mesh.ne,
             work=work,

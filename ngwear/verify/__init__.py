@@ -21,6 +21,7 @@ CASES: dict[str, str] = {
     "hunter": "ngwear.verify.hunter",
     "three_arms": "ngwear.verify.three_arms",
     "p1a": "ngwear.verify.p1a",
+    "indentation": "ngwear.verify.indentation",
     "ring": "ngwear.verify.ring",
     "block_on_ring": "ngwear.verify.block_on_ring",
     "worn_cylinder": "ngwear.verify.worn_cylinder",

@@ -5,21 +5,28 @@ incompressible Mooney-Rivlin (C10 = 0.6, C01 = 0.15 MPa; K/G = 1e8). The exact s
 ``r^2 = R^2 + r_a^2 - a^2``; its pressure is ``closed_forms.expanding_pressure``. Elements of order 2 on a curved
 outline shall converge with h^3 in the displacement's L2 norm (Taylor & Hood 1973); the observed order is
 ``log2`` of the error's ratio when the elements are halved.
+
+Tetrahedra: a block of 2 mm whose whole surface is twisted about its axis by 0.1 rad/mm. Torsion is in equilibrium in
+every incompressible isotropic material (Ericksen, Z. Angew. Math. Phys. 5 (1954) 466), so that the inside must twist
+along.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import ngsolve as ng
+import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.equilibrium.problem import Problem, Support
-from ngwear.equilibrium.stepping import StepOptions, advance
-from ngwear.fields.kinematics import PlaneStrain
+from ngwear.equilibrium.stepping import StepOptions, advance, relax
+from ngwear.fields.kinematics import PlaneStrain, Solid
+from ngwear.geometry.sheet import Sheet
 from ngwear.materials import MooneyRivlin
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed, quarter_ring
@@ -27,7 +34,11 @@ from ngwear.verify.closed_forms import expanding_pressure
 
 INNER, OUTER, EXPANDED = 1.0, 2.0, 1.2
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1.5e8)
+# Whose volume the boundary's interpolation fixes as well: K/G = 1e5.
+TWISTED = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1.5e5)
 SIZES = (0.4, 0.2, 0.1, 0.05)
+SOLID_SIZES = (1.0, 0.5, 0.25)
+TWIST = 0.1  # rad/mm
 LEAST_ORDER = 2.8
 
 
@@ -47,17 +58,38 @@ def displacement_error(size: float) -> float:
     return math.sqrt(ng.Integrate(off * off * measure, body.mesh) / ng.Integrate(exact * exact * measure, body.mesh))
 
 
+def torsion_error(size: float) -> float:
+    """The same for a twisted block of tetrahedra of ``size`` [mm]."""
+    nowhere = np.empty((0, 3))
+    sheet = {"thickness": 2.0, "track_radius": math.inf, "reach": 1.0, "beside": 1.0}
+    body = Sheet(**sheet, seeds=nowhere, sizes=nowhere[:, 0], coarse=size)
+    supports = [Support(("bottom", "top", "side"))]
+    problem = Problem(body, Solid(), [Elasticity(TWISTED)], supports=supports)
+    angle = TWIST * ng.z
+    turned = (ng.x * ng.cos(angle) - ng.y * ng.sin(angle), ng.x * ng.sin(angle) + ng.y * ng.cos(angle))
+    exact = ng.CF((turned[0] - ng.x, turned[1] - ng.y, 0))
+    field = problem.fields[DISPLACEMENT]
+    field.Set(exact, definedon=body.boundary(("bottom", "top", "side")))
+    relax(problem, StepOptions(newton=NewtonOptions(tolerance=1e-9)))
+    off, measure = field - exact, ng.dx(bonus_intorder=4)
+    return math.sqrt(ng.Integrate(off * off * measure, body.mesh) / ng.Integrate(exact * exact * measure, body.mesh))
+
+
 def run() -> list[Check]:
     """Observed order between each two meshes."""
+    return [*_orders("section", displacement_error, SIZES), *_orders("solid", torsion_error, SOLID_SIZES)]
+
+
+def _orders(kind: str, error_at: Callable[[float], float], sizes: tuple[float, ...]) -> list[Check]:
     checks, last = [], math.nan
-    for size in SIZES:
+    for size in sizes:
         clock = Stopwatch()
-        error = displacement_error(size)
+        error = error_at(size)
         if not math.isnan(last):
             checks.append(
                 Check(
                     "convergence",
-                    f"order of the displacement's L2 error, h = {2 * size:g} to {size:g} mm [-]",
+                    f"order of the displacement's L2 error, {kind}, h = {2 * size:g} to {size:g} mm [-]",
                     math.log2(last / error),
                     LEAST_ORDER,
                     0.0,

@@ -18,41 +18,48 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns
 from ngwear.effects.contact import Contact
+from ngwear.effects.contact_patch import PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
+from ngwear.effects.unilateral import UnilateralContact
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
-from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain
-from ngwear.geometry.body import Body
+from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Solid
 from ngwear.geometry.contour import Contour
+from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.sheet import Sheet
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
-from ngwear.surfaces import Cylinder, Plane, RigidSurface
+from ngwear.surfaces import Cylinder, Plane, RigidSurface, Sphere
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
 
 STEP, TOLERANCE = 1e-5, 1e-6
 WIDTH, BOTTOM, TOP, SIZE = 4.0, 1.0, 3.0, 0.5
+NOWHERE = np.empty((0, 3))
 MATERIALS = {
     "neo-Hooke": NeoHooke(shear=1.5, bulk_modulus=1000.0),
     "Mooney-Rivlin": MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
 }
 ARMS = PronySeries((3.0, 2.0), (0.1, 1.0))
-KINEMATICS = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
+SECTION = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
+SOLID = {"solid": Solid()}
+KINEMATICS = SECTION | SOLID
 SURFACES = {
     "plane": Plane(point=(WIDTH / 2, TOP), normal_vector=(0.3, -1.0)),
     "cylinder": Cylinder(centre=(0.5, TOP + 2.5), radius=3.0),
 }
+BALLS = {"ball": Sphere(centre=(-1.5, 0.0, TOP + 2.5), radius=3.0, track_radius=8.0)}
 
 
 class _UnknownsOf(Term):
     """A contact's unknowns without its energy: a term that is built on them is seen alone."""
 
-    def __init__(self, contact: Contact) -> None:
+    def __init__(self, contact: UnilateralContact) -> None:
         super().__init__()
         self.contact = contact
 
-    def spaces(self, body: Body) -> dict[str, ng.FESpace]:
+    def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
         return self.contact.spaces(body)
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
@@ -64,11 +71,11 @@ def _set_state(problem: Problem, rng: np.random.Generator) -> None:
 
     def wave(mean: float, size: float) -> ng.CoefficientFunction:
         kx, ky, phase = rng.uniform(0.5, 1.5), rng.uniform(0.5, 1.5), rng.uniform(0, 2 * np.pi)
-        return mean + size * ng.sin(kx * ng.x + ky * ng.y + phase)
+        return mean + size * ng.sin(kx * ng.x + ky * ng.y - ng.z + phase)
 
     for name, field in problem.fields.items():
         if name == DISPLACEMENT:
-            field.Set(ng.CF((wave(0, 0.1), wave(0, 0.1))))
+            field.Set(ng.CF(tuple(wave(0, 0.1) for _ in range(problem.body.mesh.dim))))
         elif name == VOLUMETRIC_STRESS:
             field.Set(wave(0, 1))
         elif field.space.ndof == 1:
@@ -98,8 +105,9 @@ def tangent_error(problem: Problem, rng: np.random.Generator) -> float:
     return float(max(errors))
 
 
-def _contact(surface: RigidSurface, forced: bool, wear: float) -> Contact:
-    contact = Contact("rigid", ("top",), surface, force_controlled=forced, modulus=1.5)
+def _contact(surface: RigidSurface, forced: bool, wear: float) -> UnilateralContact:
+    kind = PatchContact if isinstance(surface, Sphere) else Contact
+    contact = kind("rigid", ("top",), surface, force_controlled=forced, modulus=1.5)
     contact.load.Set(2.0 if forced else 0.05)
     contact.compliance.Set(wear)
     return contact
@@ -109,7 +117,8 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
     for (kin, kinematics), (name, material) in itertools.product(KINEMATICS.items(), MATERIALS.items()):
         yield f"elasticity, {name}, {kin}", kinematics, [Elasticity(material)]
         yield f"viscosity, {name}, {kin}", kinematics, [Elasticity(material), Viscosity(material, ARMS)]
-    for (kin, kinematics), (name, surface) in itertools.product(KINEMATICS.items(), SURFACES.items()):
+    pairs = itertools.product(SECTION.items(), SURFACES.items())
+    for (kin, kinematics), (name, surface) in (*pairs, *itertools.product(SOLID.items(), BALLS.items())):
         for forced, wear in itertools.product((False, True), (0.0, 0.02)):
             how = f"{'force' if forced else 'displacement'}{' and wear' if wear else ''}"
             yield f"contact, {name}, {how}, {kin}", kinematics, [_contact(surface, forced, wear)]
@@ -121,7 +130,7 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
                 kinematics,
                 [_UnknownsOf(contact), FullSliding(contact, 0.8)],
             )
-    for kin, kinematics in KINEMATICS.items():
+    for kin, kinematics in SECTION.items():
         fluid = FluidPressure(("right", "top"), ("right",), ())
         fluid.pressure.Set(2.0)
         yield f"fluid pressure, {kin}", kinematics, [fluid]
@@ -129,11 +138,14 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
 
 def run() -> list[Check]:
     """One check a term and variant."""
-    body = meshed(Contour.rectangle((0.0, WIDTH), (BOTTOM, TOP)), SIZE)
+    section = meshed(Contour.rectangle((0.0, WIDTH), (BOTTOM, TOP)), SIZE)
+    solid = Sheet(
+        thickness=TOP, track_radius=8.0, reach=2.0, beside=1.5, seeds=NOWHERE, sizes=NOWHERE[:, 0], coarse=1.0
+    )
     checks = []
     for label, kinematics, terms in _cases():
         clock, rng = Stopwatch(), np.random.default_rng(7)
-        problem = Problem(body, kinematics, terms)
+        problem = Problem(solid if isinstance(kinematics, Solid) else section, kinematics, terms)
         _set_state(problem, rng)
         for term in terms:
             term.prepare()
