@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import json
-import os
 import pickle
 import resource
-import tempfile
-from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import IO, Any
@@ -19,13 +15,12 @@ from numpy.typing import NDArray
 
 from ngwear import __version__
 from ngwear.errors import ResultError
+from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder
 from ngwear.geometry.contour import Contour
 from ngwear.scene import Scene
 from ngwear.units import UNITS, force_unit
 
 Array = NDArray[np.float64]
-
-SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.pkl"
 
 
 def fingerprint(scene: Scene) -> str:
@@ -200,28 +195,12 @@ def _deformed_mesh(state: Any, phase: int) -> dict[str, Array]:
     return {"points [mm]": points + u, "triangles": triangles}
 
 
-class Folder:
-    """A run's folder; every file in it is replaced as a whole, so that a kill leaves the last good one.
-
-    Raises
-    ------
-    ResultError
-        If the folder belongs to another run, cannot be written, or the disk is full.
-    """
+class Folder(OutFolder):
+    """The folder of a wear run, with the checkpoint that it goes on from."""
 
     def __init__(self, path: Path, scene: Scene, *, resume: bool) -> None:
-        self.path = Path(path)
         self.scene_hash = fingerprint(scene)
-        if self.path.exists() and not self.path.is_dir():
-            raise ResultError(f"{self.path} is a file; give a folder for the results")
-        if not resume and (self.path / CHECKPOINT).exists():
-            raise ResultError(f"{self.path} already holds a run: go on with --resume, or give another folder")
-        try:
-            self.path.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise ResultError(f"{self.path} cannot be made: {error.strerror}") from error
-        if not os.access(self.path, os.W_OK):
-            raise ResultError(f"{self.path} cannot be written to: no permission")
+        super().__init__(path, CHECKPOINT, resume=resume)
 
     def load(self) -> tuple[Any, Recorder] | None:
         """Return the state and the records of the run to go on with, or None if it has not begun."""
@@ -240,47 +219,16 @@ class Folder:
     def save(self, state: Any, recorder: Recorder) -> None:
         """Write checkpoint and series."""
         content = pickle.dumps({"scene": self.scene_hash, "state": state, "recorder": recorder})
-        self._replace(CHECKPOINT, lambda file: file.write(content))
-        self._replace(SERIES, lambda file: file.write(_csv(recorder.rows)))
+        self.replace(CHECKPOINT, lambda file: file.write(content))
+        self.write_series(recorder.rows)
 
     def finish(self, recorder: Recorder, summary: dict[str, Any]) -> None:
-        """Write the summary, the series and the fields; clear away what a kill has left half-written."""
-        for left in self.path.glob(".*.*"):
-            if left.name.startswith(tuple(f".{name}." for name in (SERIES, FIELDS, SUMMARY, CHECKPOINT))):
-                left.unlink(missing_ok=True)
+        """Write the summary, the series and the fields."""
+        self.clear()
         if recorder.rows:
-            self._replace(SERIES, lambda file: file.write(_csv(recorder.rows)))
-        self._replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
-        self._replace(FIELDS, lambda file: _hdf5(file, recorder, summary))
-
-    def _replace(self, name: str, write: Callable[[IO[bytes]], Any]) -> None:
-        try:
-            with tempfile.NamedTemporaryFile(dir=self.path, prefix=f".{name}.", delete=False) as file:
-                temporary = Path(file.name)
-                try:
-                    write(file)
-                    file.flush()
-                    os.fsync(file.fileno())
-                except BaseException:
-                    temporary.unlink(missing_ok=True)
-                    raise
-            temporary.replace(self.path / name)
-        except OSError as error:
-            raise ResultError(
-                f"{self.path / name} cannot be written: {error.strerror or error}; the last saved state is kept: "
-                "free some space or permission and go on with --resume"
-            ) from error
-
-
-def _csv(rows: list[dict[str, Any]]) -> bytes:
-    import io
-
-    text = io.StringIO()
-    if rows:
-        writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    return text.getvalue().encode()
+            self.write_series(recorder.rows)
+        self.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
+        self.replace(FIELDS, lambda file: _hdf5(file, recorder, summary))
 
 
 def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:

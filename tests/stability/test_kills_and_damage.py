@@ -14,10 +14,11 @@ import pytest
 
 from ngwear.equilibrium.linear import has_pardiso
 from ngwear.errors import GeometryError, ResultError
+from ngwear.files import CHECKPOINT, FIELDS, SERIES
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
 from ngwear.plots.wear import plot
-from ngwear.results import CHECKPOINT, FIELDS, SERIES, Folder
+from ngwear.results import Folder
 from ngwear.run import run
 from ngwear.scenefile import read_scene
 

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
-from ngwear.results import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.stepper import Stepper
 
 INTERRUPTED = 130

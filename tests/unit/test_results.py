@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from ngwear.errors import ResultError
+from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.plots.wear import plot, read_result
-from ngwear.results import CHECKPOINT, FIELDS, SERIES, SUMMARY, Folder, Recorder, depths, fingerprint
+from ngwear.results import Folder, Recorder, depths, fingerprint
 from ngwear.scenefile import read_scene
 
 CHANGES = [
@@ -53,28 +54,28 @@ def test_depth_of_a_lowered_top(rectangle):
 
 def test_file_is_replaced_as_a_whole(tmp_path, sheet):
     folder = Folder(tmp_path / "out", sheet, resume=False)
-    folder._replace("a.txt", lambda file: file.write(b"old"))
+    folder.replace("a.txt", lambda file: file.write(b"old"))
 
     def fails(file):
         file.write(b"half of the ne")
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     with pytest.raises(ResultError, match=r"a\.txt cannot be written: No space left.*last saved state is kept.*resume"):
-        folder._replace("a.txt", fails)
+        folder.replace("a.txt", fails)
     assert (folder.path / "a.txt").read_bytes() == b"old"
     assert [p.name for p in folder.path.iterdir()] == ["a.txt"], "no temporary file is left"
 
 
 def test_interrupted_write_leaves_the_old_file(tmp_path, sheet):
     folder = Folder(tmp_path / "out", sheet, resume=False)
-    folder._replace("a.txt", lambda file: file.write(b"old"))
+    folder.replace("a.txt", lambda file: file.write(b"old"))
 
     def interrupted(file):
         file.write(b"half")
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        folder._replace("a.txt", interrupted)
+        folder.replace("a.txt", interrupted)
     assert (folder.path / "a.txt").read_bytes() == b"old"
     assert [p.name for p in folder.path.iterdir()] == ["a.txt"]
 

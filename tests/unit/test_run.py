@@ -16,7 +16,8 @@ from dataclasses import replace
 import pytest
 
 from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError
-from ngwear.results import CHECKPOINT, FIELDS, SERIES, SUMMARY, Folder
+from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.results import Folder
 from ngwear.run import COMPLETED, GAVE_UP, run
 from ngwear.scene import Save
 from ngwear.scenefile import read_scene

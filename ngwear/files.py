@@ -1,0 +1,80 @@
+"""A folder of results whose files are replaced as a whole, so that a kill leaves the last good ones."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, Any
+
+from ngwear.errors import ResultError
+
+SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.pkl"
+
+
+class OutFolder:
+    """A run's folder.
+
+    Parameters
+    ----------
+    path : Path
+    begun : str
+        Name of what stands in it once a run has begun.
+    resume : bool
+        Whether a run that has begun may go on.
+
+    Raises
+    ------
+    ResultError
+        If the folder holds another run, cannot be written, or the disk is full.
+    """
+
+    def __init__(self, path: Path, begun: str, *, resume: bool) -> None:
+        self.path = Path(path)
+        if self.path.exists() and not self.path.is_dir():
+            raise ResultError(f"{self.path} is a file; give a folder for the results")
+        if not resume and (self.path / begun).exists():
+            raise ResultError(f"{self.path} already holds a run: go on with --resume, or give another folder")
+        try:
+            self.path.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise ResultError(f"{self.path} cannot be made: {error.strerror}") from error
+        if not os.access(self.path, os.W_OK):
+            raise ResultError(f"{self.path} cannot be written to: no permission")
+
+    def replace(self, name: str, write: Callable[[IO[bytes]], Any]) -> None:
+        """Write a file beside the old one, then put it in its place."""
+        try:
+            with tempfile.NamedTemporaryFile(dir=self.path, prefix=f".{name}.", delete=False) as file:
+                temporary = Path(file.name)
+                try:
+                    write(file)
+                    file.flush()
+                    os.fsync(file.fileno())
+                except BaseException:
+                    temporary.unlink(missing_ok=True)
+                    raise
+            temporary.replace(self.path / name)
+        except OSError as error:
+            raise ResultError(
+                f"{self.path / name} cannot be written: {error.strerror or error}; the last saved state is kept: "
+                "free some space or permission and go on with --resume"
+            ) from error
+
+    def write_series(self, rows: list[dict[str, Any]]) -> None:
+        """One line a row, columns named ``"quantity [unit]"``."""
+        text = io.StringIO()
+        if rows:
+            writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows)
+        self.replace(SERIES, lambda file: file.write(text.getvalue().encode()))
+
+    def clear(self) -> None:
+        """Clear away what a kill has left half-written."""
+        for left in self.path.glob(".*.*"):
+            if left.name.startswith(tuple(f".{name}." for name in (SERIES, FIELDS, SUMMARY, CHECKPOINT))):
+                left.unlink(missing_ok=True)
