@@ -64,9 +64,10 @@ def draw_sheet(pin: Pin, slide: PinSlide) -> Figure:
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(11, 4.8), layout="constrained")
-    space = figure.add_subplot(1, 2, 1, projection="3d")
-    above = figure.add_subplot(1, 2, 2)
+    figure = Figure(figsize=(13, 5.2), layout="constrained")
+    grid = figure.add_gridspec(1, 2, width_ratios=(1.3, 1))
+    space = figure.add_subplot(grid[0], projection="3d")
+    above = figure.add_subplot(grid[1])
     colours = ScalarMappable(Normalize(0.0, slide.peak), "viridis")
     _draw_surface(space, pin, slide, colours)
     _draw_patch(above, slide, colours)
@@ -75,22 +76,27 @@ def draw_sheet(pin: Pin, slide: PinSlide) -> Figure:
     return figure
 
 
+def _loaded(slide: PinSlide) -> np.ndarray:
+    """Faces that carry more than a rounding of the peak."""
+    return slide.faces.pressure > 0.01 * slide.peak
+
+
 def _draw_surface(axis: Axes, pin: Pin, slide: PinSlide, colours: object) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     corners = slide.faces.corners
-    reach = 2.2 * np.ptp(slide.patch.edge[:, 0])
-    shown = (np.abs(corners[..., 0]) < reach).all(axis=1) & (np.abs(corners[..., 1]) < reach).all(axis=1)
+    reach = np.ptp(slide.patch.edge[:, 0])
+    shown = np.abs(corners[..., :2]).max(axis=(1, 2)) < 1.2 * reach
     faces = Poly3DCollection(corners[shown], edgecolors="0.3", linewidths=0.15)
     colour = colours.to_rgba(slide.faces.pressure[shown])
-    colour[slide.faces.pressure[shown] <= 0] = (0.88, 0.88, 0.88, 1.0)
+    colour[~_loaded(slide)[shown]] = (0.88, 0.88, 0.88, 1.0)
     faces.set_facecolor(colour)
     axis.add_collection3d(faces)
     axis.set_xlim(-reach, reach)
     axis.set_ylim(-reach, reach)
-    axis.set_zlim(0, 1.2 * pin.thickness)
-    axis.set_box_aspect((2 * reach, 2 * reach, 1.2 * pin.thickness))
-    axis.view_init(elev=38, azim=-60)
+    axis.set_zlim(0, 1.1 * pin.thickness)
+    axis.set_box_aspect((2 * reach, 2 * reach, 1.1 * pin.thickness), zoom=1.25)
+    axis.view_init(elev=32, azim=-62)
     axis.set_xlabel("x [mm]")
     axis.set_ylabel("y [mm]")
     axis.set_zlabel("z [mm]")
@@ -99,13 +105,12 @@ def _draw_surface(axis: Axes, pin: Pin, slide: PinSlide, colours: object) -> Non
 def _draw_patch(axis: Axes, slide: PinSlide, colours: object) -> None:
     from matplotlib.collections import PolyCollection
 
-    loaded = slide.faces.pressure > 0
+    loaded = _loaded(slide)
     patch = PolyCollection(slide.faces.corners[loaded][..., :2], edgecolors="face", linewidths=0.2)
     patch.set_facecolor(colours.to_rgba(slide.faces.pressure[loaded]))
     axis.add_collection(patch)
     edge = np.vstack([slide.patch.edge, slide.patch.edge[:1]])
     axis.plot(*edge.T, color="#d1495b", lw=1.5, label="contact's edge")
-    axis.annotate("", (1.25 * edge[:, 0].max(), 0.0), (0.0, 0.0), arrowprops={"arrowstyle": "->", "color": "w"})
     axis.plot(0, 0, "w+")
     axis.set_aspect("equal")
     axis.set_xlabel("along the track, x [mm]")

@@ -5,10 +5,13 @@ from __future__ import annotations
 import math
 import time
 from dataclasses import dataclass, replace
+from pathlib import Path
 
+import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.contact_patch import Faces, PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
@@ -221,6 +224,13 @@ class PinStage:
         middle = 0.5 * (on.min(axis=0) + on.max(axis=0))
         return float(middle[0]), float(middle[1]), float(np.linalg.norm(on - middle, axis=1).max())
 
+    def write_vtk(self, file: Path) -> None:
+        """Write displacement and volumetric stress for ParaView."""
+        fields = self.problem.fields
+        stress = fields[VOLUMETRIC_STRESS]
+        names = [DISPLACEMENT, VOLUMETRIC_STRESS.replace(" ", "_")]
+        ng.VTKOutput(self.body.mesh, coefs=[fields[DISPLACEMENT], stress], names=names, filename=str(file)).Do()
+
     def result(self, speed: float, work: Work, cpu: float) -> PinSlide:
         """What there is to see."""
         pin, contact = self.pin, self.contact
@@ -244,11 +254,26 @@ class PinStage:
 
 
 def slide_pin(
-    pin: Pin, speed: float, *, mesh: PinMesh | None = None, options: SteadyOptions | None = None
+    pin: Pin,
+    speed: float,
+    *,
+    mesh: PinMesh | None = None,
+    options: SteadyOptions | None = None,
+    vtk: Path | None = None,
 ) -> tuple[PinSlide, PinSlide]:
     """Slide steadily on a coarse mesh, refine to the contact found there, and slide again; both, the fine one last.
 
-    The first mesh has elements 1.6 times as large, so that the two tell the mesh's error.
+    The first mesh has elements and columns 1.6 times as large, so that the two tell the error of both.
+
+    Parameters
+    ----------
+    pin : Pin
+    speed : float
+        [mm/s].
+    mesh : PinMesh or None
+    options : SteadyOptions or None
+    vtk : Path or None
+        Folder for the deformed sheet as a file for ParaView.
 
     Raises
     ------
@@ -271,6 +296,8 @@ def slide_pin(
     fine = PinStage(pin, mesh, coarse.disc())
     carry_solid(coarse.problem, fine.problem)
     work = fine.slide(speed, options)
+    if vtk is not None:
+        fine.write_vtk(vtk / f"sheet_{speed:g}_mm_s")
     return first, fine.result(speed, work, time.process_time() - clock)
 
 
