@@ -17,6 +17,7 @@ CASES: dict[str, str] = {
     "convergence": "ngwear.verify.convergence",
     "locking": "ngwear.verify.locking",
     "memory": "ngwear.verify.memory",
+    "remeshed_memory": "ngwear.verify.remeshed_memory",
     "hertz": "ngwear.verify.hertz",
     "hunter": "ngwear.verify.hunter",
     "three_arms": "ngwear.verify.three_arms",
