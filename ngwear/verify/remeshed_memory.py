@@ -1,9 +1,9 @@
 """Memory through 100 unrelated meshes against a run that never remeshed, plane and axisymmetric.
 
 Half of a rubber block, 3 x 1.5 mm, on a frictionless floor, with arms of 0.1, 1 and 10 s, under a rigid cylinder of
-2 mm radius that goes up and down between 0.05 and 0.25 mm of indentation, 40 steps of 0.05 s a cycle. One run meshes the
-section anew before each step, with sizes and seeds drawn at random; its memory lives on a background. The reference
-keeps one mesh and its memory at its own material points; its q_i [MPa] are integrated beside it, at
+2 mm radius that goes up and down between 0.05 and 0.25 mm of indentation, 40 steps of 0.05 s a cycle. One run
+meshes the section anew before each step, with sizes and seeds drawn at random; its memory lives on a background.
+The reference keeps one mesh and its memory at its own material points; its q_i [MPa] are integrated beside it, at
 the background's points.
 
 What is compared is the field norm of each arm, ``|q - q_ref| / |q_ref|`` in L2 over the section: neither force nor
