@@ -18,6 +18,7 @@ CASES: dict[str, str] = {
     "locking": "ngwear.verify.locking",
     "memory": "ngwear.verify.memory",
     "remeshed_memory": "ngwear.verify.remeshed_memory",
+    "stroke_memory": "ngwear.verify.stroke_memory",
     "hertz": "ngwear.verify.hertz",
     "hunter": "ngwear.verify.hunter",
     "three_arms": "ngwear.verify.three_arms",
