@@ -138,10 +138,10 @@ class Program:
 
     @property
     def duration(self) -> float:
-        """Time from mounting to the end of the last stroke [s]."""
+        """Time that all strokes take [s]."""
         full, part = divmod(self.strokes, len(self.cycle))
         times = [stroke.duration for stroke in self.cycle]
-        return self.rest + (full * sum(times) if full else 0.0) + sum(times[:part])
+        return (full * sum(times) if full else 0.0) + sum(times[:part])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -320,7 +320,7 @@ class Scene:
         if self.prony is None:
             return None
         shortest = min(stroke.duration for stroke in self.program.cycle)
-        longest = max(self.program.duration, shortest)
+        longest = max(self.program.rest + self.program.duration, shortest)
         return self.prony.folded(shortest=shortest, longest=longest, tolerance=self.accuracy.folding_error)
 
     @property
