@@ -30,6 +30,7 @@ CASES: dict[str, str] = {
     "stability_pair": "ngwear.verify.stability_pair",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
+    "rod_seal_filled": "ngwear.verify.rod_seal_filled",
 }
 
 __all__ = ["CASES", "Check", "verify"]
