@@ -80,6 +80,7 @@ class Seat:
         displacement: ng.GridFunction,
     ) -> None:
         self.background, self.body, self.points = background, body, points
+        self._weight = 2 * np.pi * background.places[..., 1] if kinematics.axisymmetric else 1.0
         self._gradient, self._hoop = ng.Grad(displacement), kinematics.hoop_stretch(displacement)
         self._places = background.places.reshape(-1, 2)
         self._on_body = Locator(body.mesh, self._places)
@@ -99,10 +100,10 @@ class Seat:
             self._on_background.follow(self.points.places.reshape(-1, 2))
 
     @property
-    def inside(self) -> NDArray[np.bool_]:
-        """Which of the background's points lie in the body, shape (elements, 12)."""
+    def volumes(self) -> Array:
+        """Reference volume that belongs to each of the background's points, shape (elements, 12); 0 if worn away."""
         self._follow()
-        return self._on_body.inside.reshape(self.background.shape)
+        return self.background.areas * self._weight * self._on_body.inside.reshape(self.background.shape)
 
     def strain(self) -> Array:
         """Strain at the background's points, as ``MaterialPoints`` has it, without the volumetric stress.

@@ -11,11 +11,14 @@ from conftest import ARMS, REMEMBERS, edited
 from ngwear.cli import OK, main
 from ngwear.equilibrium.linear import has_pardiso
 from ngwear.errors import ConvergenceError, SceneError
+from ngwear.geometry.contour import Contour
 from ngwear.materials import WLF, NeoHooke, PronySeries, Stiffened
 from ngwear.materials.library import filled_rubber
 from ngwear.run import run
+from ngwear.scene import SupportSpec
 from ngwear.scenefile import read_scene
 from ngwear.stepper import Stepper
+from ngwear.surfaces import Plane
 
 SHIFT = 'shift = { law = "wlf", c1 = 17.44, c2 = 51.6, reference = 296.15 }'
 WARMER = "temperature = 303.15\n"
@@ -24,6 +27,10 @@ BARE = ((SHIFT + "\n", ""), (WARMER, ""))
 
 def arms_text(*changes):
     return edited(ARMS, changes)
+
+
+def lifted(contour, height):
+    return Contour(contour.points + np.array([0.0, height]), contour.names, contour.corners)
 
 
 @pytest.fixture
@@ -197,6 +204,23 @@ def test_under_a_constant_force_memory_hardly_changes_the_worn_area(sheet, remem
     with_arms, without = (run(scene, figures=False).summary for scene in (remembering, sheet))
     assert with_arms["worn area [mm^2]"] == pytest.approx(without["worn area [mm^2]"], rel=5e-3)
     assert with_arms["maximum depth [mm]"] != pytest.approx(without["maximum depth [mm]"], rel=1e-4)
+
+
+def test_forces_of_a_ring_with_memory_are_in_balance(remembering):
+    """The hoop tension is that of all effects; what the held edge carries acts along the axis."""
+    ring = replace(
+        remembering,
+        axisymmetric=True,
+        contacts=(replace(remembering.contacts[0], surface=Plane.bore(9.9), force=None),),
+        supports=(SupportSpec(edges=("left",), y=False),),
+        contour=lifted(remembering.contour, 3.0),
+    )
+    stepper = Stepper(ring)
+    state = stepper.advance(stepper.start())
+    forces = state.reports[0].forces
+    assert abs(forces["hoop"][1]) > 1.0
+    total = sum(force[1] for force in forces.values())
+    assert total == pytest.approx(0.0, abs=1e-6 * abs(forces["hoop"][1]))
 
 
 @pytest.mark.skipif(not has_pardiso(), reason="only PARDISO (the extra 'fast') repeats itself bit for bit")
