@@ -50,12 +50,13 @@ class Locator:
 
     def follow(self, points: Array) -> None:
         """Find the points in the present section; each starts from where it was first, whatever came between."""
-        shape = np.stack([np.asarray(c(self._nodes)) for c in (ng.x, ng.y)], axis=-1).reshape(-1, len(NODES), 2)
+        nodes = np.stack([np.asarray(c(self._nodes)) for c in (ng.x, ng.y)], axis=-1).reshape(-1, len(NODES), 2)
+        maps = _polynomials(nodes)
         element = self._first["nr"].astype(np.int64)
         place = np.stack([self._first["x"], self._first["y"]], axis=1)
         todo = np.arange(len(points))
         for moves in range(MOST_MOVES + 1):
-            place[todo] = _inverted(shape[element[todo]], points[todo], place[todo])
+            place[todo] = _inverted(maps[..., element[todo]], points[todo], place[todo])
             beyond = _barycentric(place[todo])
             beyond[self._neighbours[element[todo]] < 0] = 0.0
             side = beyond.argmin(axis=1)
@@ -77,28 +78,33 @@ def _barycentric(place: Array) -> Array:
     return np.column_stack([place, 1 - place.sum(axis=1)])
 
 
-def _inverted(shape: Array, points: Array, place: Array) -> Array:
-    """Reference coordinates at which elements with nodes ``shape``, (n, 6, 2), take the points."""
-    # The map as a polynomial: c + g x + h y + (products of order 2), from its values at the nodes.
-    a, b, c, bc, ac, ab = np.moveaxis(shape, 1, 0)
-    xx, yy = 2 * (a + c - 2 * ac), 2 * (b + c - 2 * bc)
-    xy = 4 * (c + ab - ac - bc)
-    gx, gy = a - c - xx, b - c - yy
+def _polynomials(nodes: Array) -> Array:
+    """Coefficients of 1, x, y, xx, xy and yy in each element's map, shape (6, 2, elements), from its nodes."""
+    a, b, c, bc, ac, ab = nodes.transpose(1, 2, 0)
+    xx, xy, yy = 2 * (a + c - 2 * ac), 4 * (c + ab - ac - bc), 2 * (b + c - 2 * bc)
+    return np.stack([c, a - c - xx, b - c - yy, xx, xy, yy])
+
+
+def _inverted(maps: Array, points: Array, place: Array) -> Array:
+    """Reference coordinates at which maps, shape (6, 2, n), take the points, shape (n, 2), by Newton's method."""
     place, todo = place.copy(), np.arange(len(points))
+    aim, (x, y) = points.T, place.T
     for _ in range(10):
-        x, y = place[todo, 0, None], place[todo, 1, None]
-        off = c[todo] + (gx[todo] + xx[todo] * x + xy[todo] * y) * x + (gy[todo] + yy[todo] * y) * y - points[todo]
-        dx, dy = gx[todo] + 2 * xx[todo] * x + xy[todo] * y, gy[todo] + 2 * yy[todo] * y + xy[todo] * x
-        det = dx[:, 0] * dy[:, 1] - dx[:, 1] * dy[:, 0]
-        step = np.stack([off[:, 0] * dy[:, 1] - off[:, 1] * dy[:, 0], dx[:, 0] * off[:, 1] - dx[:, 1] * off[:, 0]])
-        step = (step / det).T
-        place[todo] = np.clip(place[todo] - step, -3.0, 4.0)  # far outside the map may fold
-        todo = todo[np.abs(step).max(axis=1) > 1e-10]
-        if len(todo) == 0:
+        one, gx, gy, xx, xy, yy = maps
+        off = one + (gx + xx * x + xy * y) * x + (gy + yy * y) * y - aim
+        along, across = gx + 2 * xx * x + xy * y, gy + 2 * yy * y + xy * x
+        det = along[0] * across[1] - along[1] * across[0]
+        step = np.stack([off[0] * across[1] - off[1] * across[0], along[0] * off[1] - along[1] * off[0]]) / det
+        found = np.clip(np.stack([x, y]) - step, -3.0, 4.0)  # far outside the map may fold
+        place[todo] = found.T
+        left = np.abs(step).max(axis=0) > 1e-10
+        if not left.any():
             return place
+        todo, maps, aim, (x, y) = todo[left], maps[..., left], aim[:, left], found[:, left]
     # Beyond the fold of a curved element there is no solution: the plane through its corners shows the way.
-    sides = np.stack([a[todo] - c[todo], b[todo] - c[todo]], axis=-1)
-    place[todo] = np.linalg.solve(sides, (points[todo] - c[todo])[..., None])[..., 0]
+    corner, gx, gy, xx, _, yy = maps
+    sides = np.stack([gx + xx, gy + yy], axis=1).T
+    place[todo] = np.linalg.solve(sides.transpose(0, 2, 1), (aim - corner).T[..., None])[..., 0]
     return place
 
 
