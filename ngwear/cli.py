@@ -35,6 +35,7 @@ def _parser() -> argparse.ArgumentParser:
     explain.set_defaults(do=_explain)
     plot = commands.add_parser("plot", help="draw the figures of a run again")
     plot.add_argument("folder", type=Path, metavar="DIR")
+    plot.add_argument("--against", type=Path, metavar="DIR", help="draw it beside another run of the same outline")
     plot.set_defaults(do=_plot)
     return parser
 
@@ -114,8 +115,9 @@ def _explain(options: argparse.Namespace) -> int:
 
 
 def _plot(options: argparse.Namespace) -> int:
+    from ngwear.plots.compare import compare
     from ngwear.plots.wear import plot
 
-    for path in plot(options.folder):
+    for path in [compare(options.folder, options.against)] if options.against else plot(options.folder):
         print(path)
     return OK

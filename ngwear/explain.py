@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from ngwear.scene import Scene
@@ -37,11 +38,14 @@ def explain(scene: Scene) -> dict[str, Any]:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
     if rate > 0:
         present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}'"
+    if scene.prony is not None:
+        present["memory"] = _memory_in_words(scene)
+    left_out = ["viscosity", "stick-slip", "heat", "adhesion", "inertia", "fluid film"]
     return {
         "scene": scene.name,
         "kind": "axisymmetric" if scene.axisymmetric else "plane strain",
         "effects": present,
-        "left out": ["viscosity", "stick-slip", "heat", "adhesion", "inertia", "fluid film"],
+        "left out": [effect for effect in left_out if effect != "viscosity" or scene.prony is None],
         "unknowns on the mounting mesh": {
             name: problem.part(name).stop - problem.part(name).start for name in problem.names
         },
@@ -52,5 +56,43 @@ def explain(scene: Scene) -> dict[str, Any]:
             "K/G [-]": material.bulk_modulus / material.shear_modulus,
             "highest sealed pressure / G [-]": max(s.pressure for s in scene.program.cycle) / material.shear_modulus,
             "longest stroke / critical explicit wear distance [-]": travel / critical,
+            **_memory_numbers(scene),
         },
+        **({"arms of the memory": _arms(scene)} if scene.prony is not None else {}),
     }
+
+
+def _memory_in_words(scene: Scene) -> str:
+    folding = scene.folding
+    kept, fast, slow = len(folding.kept.times), len(folding.fast), len(folding.slow)
+    rest = scene.program.rest
+    before = f"mounted {rest:g} s before" if math.isfinite(rest) else "mounted and relaxed before"
+    return f"{kept} arms kept; {fast} folded to nothing, {slow} into the elastic part; {before}"
+
+
+def _memory_numbers(scene: Scene) -> dict[str, float]:
+    if scene.prony is None:
+        return {}
+    folding = scene.folding
+    return {
+        "G0/G of the arms kept [-]": folding.kept.instantaneous,
+        "elastic part over long-term stiffness [-]": folding.stiffening,
+        "largest error of stress by folding [-]": folding.bound,
+        "shortest stroke [s]": min(stroke.duration for stroke in scene.program.cycle),
+        "all strokes [s]": scene.program.duration,
+    }
+
+
+def _arms(scene: Scene) -> dict[str, str]:
+    """Each arm: what becomes of it, its stiffness, and Deborah's number of every kind of stroke."""
+    folding = scene.folding
+    told = {}
+    for time, ratio in zip(scene.prony.times, scene.prony.ratios, strict=True):
+        fate = "kept"
+        if time in folding.fast:
+            fate = "folded to nothing: it has always relaxed"
+        elif time in folding.slow:
+            fate = "folded into the elastic part: it never relaxes"
+        deborah = {f"{time / stroke.duration:.3g}": None for stroke in scene.program.cycle}
+        told[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {fate}"
+    return told

@@ -17,14 +17,14 @@ FINER = 0.7  # of the size that the contacts ask for: what the indicator must fa
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 
-def wanted_size(stage: Stage, phases: list[Array]) -> SizeField:
+def wanted_size(stage: Stage, phases: list[Array], *, reach: float = 2.0) -> SizeField:
     """Element sizes for the present states, one for each stroke of the cycle.
 
-    The patch's where a followed contact carries or nearly carries load; elsewhere what brings the indicator of an
-    element to its share of ``Accuracy.stress_error``.
+    The patch's where a followed contact carries load or its gap is below ``reach`` patches; elsewhere what brings
+    the indicator of an element to its share of ``Accuracy.stress_error``.
     """
     accuracy = stage.scene.accuracy
-    asked = _contact_places(stage, phases)
+    asked = _contact_places(stage, phases, reach)
     contacts = SizeField(asked, np.full(len(asked), accuracy.patch), accuracy.coarse, accuracy.grading)
     places, sizes = _stress_sizes(stage, phases)
     heard = sizes < FINER * contacts(places)
@@ -45,8 +45,8 @@ def outgrown(stage: Stage, phases: list[Array]) -> bool:
     return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
 
 
-def _contact_places(stage: Stage, phases: list[Array]) -> Array:
-    """Contour points where a followed contact carries or nearly carries load, shape (k, 2)."""
+def _contact_places(stage: Stage, phases: list[Array], reach: float) -> Array:
+    """Contour points where a followed contact carries load or nearly so, shape (k, 2)."""
     contour = stage.body.contour
     ask = np.zeros(len(contour), dtype=bool)
     vector = stage.problem.state.vec.FV().NumPy()
@@ -55,7 +55,7 @@ def _contact_places(stage: Stage, phases: list[Array]) -> Array:
         vector[:] = phase
         for spec in stage.scene.followed:
             profile = stage.contacts[spec.name].profile()
-            near = (profile.nominal_pressure > 0) | (profile.gap < 2 * stage.scene.accuracy.patch)
+            near = (profile.nominal_pressure > 0) | (profile.gap < reach * stage.scene.accuracy.patch)
             ask |= _spanned(contour, profile, near)
     vector[:] = keep
     return contour.points[ask]
@@ -75,7 +75,7 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
         strain = points.strain(phase)
         stress, _ = elasticity.response(strain, tangent=False)
         off = stress[..., :5] - points.recovered(stress[..., :5])
-        error = np.sqrt((points.volumes * (off**2).sum(axis=-1)).sum(axis=1) / (2 * stage.scene.material.shear_modulus))
+        error = np.sqrt((points.volumes * (off**2).sum(axis=-1)).sum(axis=1) / (2 * elasticity.material.shear_modulus))
         energy = (points.volumes * elasticity.energy(strain)).sum()
         share = stage.scene.accuracy.stress_error * np.sqrt(energy / len(edge))
         edge = np.minimum(edge, points.edges * np.sqrt(share / np.maximum(error, 1e-12 * share)))

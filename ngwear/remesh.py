@@ -44,7 +44,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
-    stage = Stage(old.scene, body)
+    stage = Stage(old.scene, body, state.background)
     vectors = carry(old.problem, [p.vector for p in state.phases], stage.problem)
     before, after = old.body.contour, body.contour
     for phase, vector in zip(state.phases, vectors, strict=True):

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from ngwear.errors import SceneError
 from ngwear.geometry.contour import Contour
-from ngwear.materials import Hyperelastic
+from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.surfaces import RigidSurface
 
 
@@ -89,30 +89,59 @@ class Stroke:
         Along the surfaces' tangent (their normal turned clockwise): 1 forward, -1 backward.
     pressure : float
         Sealed pressure [MPa], >= 0.
+    speed : float or None
+        Of the sliding [mm/s], > 0; only rubber with memory asks for it.
     """
 
     name: str
     travel: float
     direction: float = 1.0
     pressure: float = 0.0
+    speed: float | None = None
 
     def __post_init__(self) -> None:
         place = f"program.stroke '{self.name}'"
         _require(self.travel > 0, f"{place}.travel", self.travel, "must be greater than 0 mm")
         _require(-1 <= self.direction <= 1, f"{place}.direction", self.direction, "must lie between -1 and 1")
         _require(self.pressure >= 0, f"{place}.pressure", self.pressure, "must be at least 0 MPa")
+        _require(self.speed is None or self.speed > 0, f"{place}.speed", self.speed, "must be greater than 0 mm/s")
+
+    @property
+    def duration(self) -> float:
+        """Time that the stroke takes [s]; infinity without a speed."""
+        return math.inf if self.speed is None else self.travel / self.speed
 
 
 @dataclass(frozen=True, kw_only=True)
 class Program:
-    """Mounting, then the strokes of ``cycle`` in turn until ``strokes`` are done."""
+    """Mounting, then the strokes of ``cycle`` in turn until ``strokes`` are done.
+
+    Parameters
+    ----------
+    cycle : tuple of Stroke
+    strokes : int
+    rest : float
+        How long the part sits mounted before the first stroke [s], > 0; for ever, until rubber with memory has relaxed,
+        unless given.
+    """
 
     cycle: tuple[Stroke, ...]
     strokes: int
+    rest: float = math.inf
 
     def __post_init__(self) -> None:
         _require(bool(self.cycle), "program.stroke", self.cycle, "give at least one stroke")
         _require(self.strokes >= 0, "program.strokes", self.strokes, "must be at least 0")
+        _require(
+            self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without it the part relaxes fully"
+        )
+
+    @property
+    def duration(self) -> float:
+        """Time that all strokes take [s]."""
+        full, part = divmod(self.strokes, len(self.cycle))
+        times = [stroke.duration for stroke in self.cycle]
+        return (full * sum(times) if full else 0.0) + sum(times[:part])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +165,8 @@ class Accuracy:
         coarse [-].
     wear_error : float
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side.
+    folding_error : float
+        Largest relative error of stress that arms of the memory may cause by being folded away [-].
     """
 
     patch: float = 0.01
@@ -145,6 +176,7 @@ class Accuracy:
     order: int = 2
     stress_error: float = 0.05
     wear_error: float = 0.08
+    folding_error: float = 1e-3
 
     def __post_init__(self) -> None:
         _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
@@ -154,6 +186,9 @@ class Accuracy:
         _require(self.order in (2,), "accuracy.order", self.order, "must be 2")
         _require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
         _require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
+        _require(
+            0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -205,6 +240,8 @@ class Save:
 class Scene:
     """Everything that a run needs.
 
+    ``material`` is the long-term behaviour, ``prony`` the arms of its memory, if any, at the scene's temperature.
+
     Raises
     ------
     SceneError
@@ -216,6 +253,7 @@ class Scene:
     material: Hyperelastic
     contacts: tuple[ContactSpec, ...]
     program: Program
+    prony: PronySeries | None = None
     axisymmetric: bool = False
     fluid: FluidSpec | None = None
     supports: tuple[SupportSpec, ...] = ()
@@ -250,6 +288,12 @@ class Scene:
                 stroke.pressure,
                 "a sealed pressure needs a [fluid] table that says which edges it may reach",
             )
+            _require(
+                self.prony is None or stroke.speed is not None,
+                f"program.stroke '{stroke.name}'.speed",
+                stroke.speed,
+                "rubber with memory needs the stroke's speed in mm/s",
+            )
         for contact in self.contacts:
             self._check_side(contact)
 
@@ -266,6 +310,32 @@ class Scene:
             f"lies on the wrong side: the middle of the section is {-gap:.4g} mm inside the rigid body; "
             "check diameters, point and normal",
         )
+
+    @property
+    def folding(self) -> Folding | None:
+        """Which arms the scene can tell from a spring or from nothing; None without memory.
+
+        Its window reaches from the shortest stroke to the time from mounting to the end.
+        """
+        if self.prony is None:
+            return None
+        shortest = min(stroke.duration for stroke in self.program.cycle)
+        longest = max(self.program.rest + self.program.duration, shortest)
+        return self.prony.folded(shortest=shortest, longest=longest, tolerance=self.accuracy.folding_error)
+
+    @property
+    def rubber(self) -> Hyperelastic:
+        """What is solved as elastic: the long-term material, and the arms that never relax here as springs."""
+        folding = self.folding
+        if folding is None or folding.stiffening == 1:
+            return self.material
+        return Stiffened(material=self.material, factor=folding.stiffening, bulk_modulus=self.material.bulk_modulus)
+
+    @property
+    def arms(self) -> PronySeries | None:
+        """Arms that need a memory, relative to ``rubber``; None if there are none."""
+        folding = self.folding
+        return folding.kept if folding is not None and folding.kept.times else None
 
     @property
     def followed(self) -> tuple[ContactSpec, ...]:

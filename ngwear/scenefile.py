@@ -10,7 +10,8 @@ from typing import Any
 
 from ngwear.errors import SceneError
 from ngwear.geometry.contour_files import read_contour
-from ngwear.materials import Hyperelastic, MooneyRivlin, NeoHooke
+from ngwear.materials import WLF, Arrhenius, Hyperelastic, MooneyRivlin, NeoHooke, PronySeries
+from ngwear.materials.library import relaxation_of
 from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
@@ -19,6 +20,8 @@ _MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
     "neo-hooke": NeoHooke,
     "mooney-rivlin": MooneyRivlin,
 }
+_SHIFTS = {"wlf": WLF, "arrhenius": Arrhenius}
+_REFERENCES = ("long-term", "instantaneous", "absolute")
 
 
 def _rename(function: Callable[..., Any], **names: str) -> Callable[..., Any]:
@@ -69,6 +72,7 @@ def read_scene(path: Path | str) -> Scene:
         axisymmetric=KINDS[kind],
         contour=read_contour(path.parent / str(_get(outline, "contour", "file"))),
         material=_material(_table(data, "material")),
+        prony=_prony(data["material"]["prony"]) if "prony" in data["material"] else None,
         contacts=tuple(_contact(i, table) for i, table in enumerate(_list(data, "contact"))),
         fluid=_dataclass(FluidSpec, "fluid", data["fluid"]) if "fluid" in data else None,
         supports=tuple(_dataclass(SupportSpec, f"support[{i}]", t) for i, t in enumerate(_list(data, "support"))),
@@ -83,8 +87,69 @@ def _material(table: dict[str, Any]) -> Hyperelastic:
     model = _get(table, "material", "model")
     if not isinstance(model, str) or model not in _MATERIALS:
         raise SceneError("material.model", model, f"must be one of {list(_MATERIALS)}")
-    values = {key: value for key, value in table.items() if key not in ("model", "source")}
+    values = {key: value for key, value in table.items() if key not in ("model", "source", "prony")}
     return _dataclass(_MATERIALS[model], "material", values)
+
+
+def _prony(table: dict[str, Any]) -> PronySeries:
+    """Arms at the scene's temperature: a compound's from the library, or moduli and times."""
+    place = "material.prony"
+    if not isinstance(table, dict):
+        raise SceneError(place, table, "must be a table [material.prony]")
+    table = {key: value for key, value in table.items() if key != "source"}
+    shift = None
+    if "compound" in table:
+        _known(f"{place}.", table, {"compound", "temperature", "shift"})
+        series, shift = relaxation_of(_typed(f"{place}.compound", table["compound"], "str"))
+    else:
+        series = _listed_arms(table, place)
+    if "shift" in table:
+        shift = _shift(table["shift"], f"{place}.shift")
+        _get(table, place, "temperature")
+    if "temperature" not in table:
+        return series
+    temperature = _typed(f"{place}.temperature", table["temperature"], "float")
+    if shift is None:
+        raise SceneError(f"{place}.temperature", temperature, "needs a [material.prony.shift] table")
+    try:
+        return series.shifted(shift.factor(temperature))
+    except SceneError as error:
+        raise SceneError(f"{place}.temperature", temperature, error.remedy) from None
+
+
+def _listed_arms(table: dict[str, Any], place: str) -> PronySeries:
+    _known(f"{place}.", table, {"compound", "moduli", "times", "reference", "long_term", "temperature", "shift"})
+    moduli, times = (_numbers(f"{place}.{key}", _get(table, place, key)) for key in ("moduli", "times"))
+    reference = _get(table, place, "reference")
+    if reference not in _REFERENCES:
+        raise SceneError(
+            f"{place}.reference", reference, f"must be one of {list(_REFERENCES)}: what the moduli are relative to"
+        )
+    if reference == "absolute":
+        long_term = _typed(f"{place}.long_term", _get(table, place, "long_term"), "float")
+        return PronySeries.from_moduli(moduli, times, long_term=long_term)
+    if "long_term" in table:
+        raise SceneError(f"{place}.long_term", table["long_term"], "goes with reference = 'absolute' only")
+    return PronySeries(moduli, times) if reference == "long-term" else PronySeries.from_shares(moduli, times)
+
+
+def _numbers(place: str, values: Any) -> tuple[float, ...]:
+    if not isinstance(values, list) or not values:
+        raise SceneError(place, values, "must be a list of numbers, one for each arm")
+    numbers = tuple(_typed(f"{place}[{i}]", value, "float") for i, value in enumerate(values))
+    for i, number in enumerate(numbers):
+        if not number > 0:
+            raise SceneError(f"{place}[{i}]", number, "must be greater than 0")
+    return numbers
+
+
+def _shift(table: Any, place: str) -> WLF | Arrhenius:
+    if not isinstance(table, dict):
+        raise SceneError(place, table, "must be a table [material.prony.shift]")
+    law = _get(table, place, "law")
+    if not isinstance(law, str) or law not in _SHIFTS:
+        raise SceneError(f"{place}.law", law, f"must be one of {list(_SHIFTS)}")
+    return _dataclass(_SHIFTS[law], place, {key: value for key, value in table.items() if key != "law"})
 
 
 def _contact(number: int, table: dict[str, Any]) -> ContactSpec:
@@ -112,12 +177,13 @@ def _surface(place: str, table: dict[str, Any]) -> RigidSurface:
 
 
 def _program(table: dict[str, Any]) -> Program:
-    _known("program.", table, {"strokes", "stroke"})
+    _known("program.", table, {"strokes", "stroke", "rest"})
     strokes = _get(table, "program", "strokes")
     cycle = tuple(_dataclass(Stroke, f"program.stroke[{i}]", t) for i, t in enumerate(_list(table, "stroke")))
     if isinstance(strokes, bool) or not isinstance(strokes, int):
         raise SceneError("program.strokes", strokes, "must be a whole number")
-    return Program(strokes=strokes, cycle=cycle)
+    rest = {"rest": _typed("program.rest", table["rest"], "float")} if "rest" in table else {}
+    return Program(strokes=strokes, cycle=cycle, **rest)
 
 
 def _dataclass(cls: Any, place: str, table: Any) -> Any:

@@ -11,8 +11,10 @@ from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
+from ngwear.effects.stroke_memory import StrokeMemory
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.errors import SceneError
+from ngwear.fields.background import Background
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.scene import ContactSpec, Scene, Stroke
@@ -28,13 +30,17 @@ class Stage:
     contacts : dict of str to Contact
     frictions : dict of str to FullSliding
     fluid : FluidPressure or None
+    memory : StrokeMemory or None
     problem : Problem
+
+    ``background`` is where the scene's memory lives; without one, as while the part is mounted, there is none.
     """
 
-    def __init__(self, scene: Scene, body: Body) -> None:
+    def __init__(self, scene: Scene, body: Body, background: Background | None = None) -> None:
         self.scene, self.body = scene, body
-        modulus = scene.material.shear_modulus
-        self.elasticity = Elasticity(scene.material, order=scene.accuracy.order)
+        rubber = scene.rubber
+        modulus = rubber.shear_modulus
+        self.elasticity = Elasticity(rubber, order=scene.accuracy.order)
         self.contacts = {
             spec.name: Contact(
                 spec.name, spec.edges, spec.surface, modulus=modulus, force_controlled=spec.force is not None
@@ -52,6 +58,10 @@ class Stage:
         terms = [self.elasticity, *self.contacts.values(), *self.frictions.values()]
         if self.fluid is not None:
             terms.append(self.fluid)
+        self.memory = None
+        if background is not None:
+            self.memory = StrokeMemory(rubber, scene.arms, background)
+            terms.append(self.memory)
         self.problem = Problem(
             body,
             Axisymmetric() if scene.axisymmetric else PlaneStrain(),
@@ -177,5 +187,5 @@ class Stage:
         if self.fluid is not None:
             found["fluid"] = self.fluid.force()
         if self.scene.axisymmetric:
-            found["hoop"] = np.array([0.0, -self.elasticity.hoop_force(self.problem.state.vec.FV().NumPy())])
+            found["hoop"] = np.array([0.0, -self.problem.hoop_force()])
         return found

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.cycle_memory import CycleMemory
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.equilibrium.stepping import Work
+from ngwear.fields.background import Background
 from ngwear.geometry.contour import Contour
 from ngwear.stage import Stage
 from ngwear.wear.control import JumpControl
@@ -73,7 +75,13 @@ class State:
     ledger: Ledger = field(default_factory=Ledger)
     work: Work = field(default_factory=Work)
     depth_error: Array | None = None
+    memory: CycleMemory | None = None
     reports: list[StrokeReport] = field(default_factory=list)
+
+    @property
+    def background(self) -> Background | None:
+        """Where the memory lives, if the rubber has one."""
+        return None if self.memory is None else self.memory.background
 
     def __getstate__(self) -> dict[str, Any]:
         saved = dict(self.__dict__)
@@ -82,7 +90,7 @@ class State:
 
     def __setstate__(self, saved: dict[str, Any]) -> None:
         self.__dict__.update(saved)
-        self.stage = Stage(*saved["stage"])
+        self.stage = Stage(*saved["stage"], self.background)
 
     @property
     def contour(self) -> Contour:

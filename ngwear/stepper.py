@@ -6,29 +6,34 @@ import logging
 import math
 import warnings
 from collections.abc import Callable
+from copy import copy
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.cycle_memory import CycleMemory
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
+from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import smoothed
-from ngwear.refinement import mounting_field, outgrown
+from ngwear.refinement import mounting_field, outgrown, wanted_size
 from ngwear.remesh import is_due, remesh
 from ngwear.scene import Scene, Stroke
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
 from ngwear.wear.archard import critical_distance, worn_share
 from ngwear.wear.control import JumpControl
+from ngwear.wear.cycles import Plan
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
 AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
 
 
@@ -88,13 +93,33 @@ class Stepper:
                 iterations = self._solve_phase(state, i, stroke, far=state.ledger.remeshes == 1)
                 state.reports.append(self._observe(state, i, iterations))
             self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
+        if scene.arms is not None:
+            self._remember(state)
         self.on_mount(1.0)
         return state
+
+    def _remember(self, state: State) -> None:
+        """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
+        scene = self.scene
+        (first, *_), phase = scene.program.cycle, state.phases[0]
+        body = state.stage.body
+        field = wanted_size(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
+        background = Background(Body(body.contour, field))
+        state.stage = stage = Stage(scene, body, background)
+        stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+        loads = stage.stroke_loads(first)
+        stage.problem.set_loads(loads)
+        for term in stage.problem.terms:
+            term.refresh()
+        state.work.add(advance(stage.problem, _without_fluid(loads)))
+        durations = [stroke.duration for stroke in scene.program.cycle]
+        mounted = stage.memory.stress()
+        state.memory = CycleMemory(background, scene.arms, durations, mounted=mounted, rest=scene.program.rest)
 
     def _mount(self, stage: Stage) -> Work:
         """Bring the surfaces to their places, without fluid pressure."""
         problem = stage.problem
-        loads = {k: v for k, v in stage.stroke_loads(self.scene.program.cycle[0]).items() if "fluid" not in k}
+        loads = _without_fluid(stage.stroke_loads(self.scene.program.cycle[0]))
         options = StepOptions(first=1 / 64)
 
         def report(fraction: float, _: Any) -> None:
@@ -152,13 +177,13 @@ class Stepper:
 
     def _look(self, state: State) -> None:
         """Report the strokes of the cycle other than the last one on the present outline; changes nothing else."""
-        latest = state.reports[-1].phase
+        latest, kinds = state.reports[-1].phase, len(self.scene.program.cycle)
         for i, stroke in enumerate(self.scene.program.cycle):
             if i == latest:
                 continue
             saved = state.phases[i]
             state.phases[i] = replace(saved, rate=None)
-            iterations = self._solve_phase(state, i, stroke)
+            iterations = self._solve_phase(state, i, stroke, plan=self._plan(state.strokes, 1, state.strokes + kinds))
             state.reports.insert(-1, self._observe(state, i, iterations))
             state.phases[i] = saved
         problem = state.stage.problem
@@ -173,6 +198,7 @@ class Stepper:
             "contour": state.contour,
             "phases": [replace(p) for p in state.phases],
             "strokes": state.strokes,
+            "memory": copy(state.memory),
             "reports": state.reports,
             "ledger": replace(state.ledger),
             "depth_error": None if state.depth_error is None else state.depth_error.copy(),
@@ -185,21 +211,15 @@ class Stepper:
 
     def _step(self, state: State, cycles: int) -> float:
         """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown)."""
-        program = self.scene.program
-        kinds = len(program.cycle)
-        first = state.strokes % kinds
-        done = state.strokes
+        cycle, memory = self.scene.program.cycle, state.memory
+        plan = self._plan(state.strokes, cycles, self.scene.program.strokes)
         state.reports = []
         worn_before, error_before, known = state.ledger.worn, state.ledger.area_error, True
-        for i in [(first + k) % kinds for k in range(kinds)]:
-            stroke = program.cycle[i]
-            position = (i - first) % kinds
-            left = program.strokes - done - position
-            repeats = min(cycles, math.ceil(left / kinds))
-            if repeats <= 0:
-                break
-            distance = repeats * stroke.travel
-            iterations = self._solve_phase(state, i, stroke, distance=distance, repeats=repeats)
+        for i, repeats in plan:
+            distance = repeats * cycle[i].travel
+            iterations = self._solve_phase(state, i, cycle[i], plan=plan, distance=distance, repeats=repeats)
+            if memory is not None:
+                memory.leave(state.stage.memory, i)
             seen = self._observe(state, i, iterations)
             state.strokes += repeats
             known &= self._wear(state, i, distance)
@@ -212,6 +232,8 @@ class Stepper:
                     ledger=replace(state.ledger),
                 )
             )
+        if memory is not None:
+            memory.commit(plan)
         if is_due(state):
             remesh(state)
         worn = state.ledger.worn - worn_before
@@ -219,11 +241,26 @@ class Stepper:
             return math.nan
         return (state.ledger.area_error - error_before) / worn if worn > 0 else 0.0
 
+    def _plan(self, done: int, cycles: int, end: int) -> Plan:
+        """Strokes of a step that begins after ``done`` strokes: each kind in turn, and how often until ``end``."""
+        kinds = len(self.scene.program.cycle)
+        plan = [((done + k) % kinds, min(cycles, math.ceil((end - done - k) / kinds))) for k in range(kinds)]
+        return [(kind, repeats) for kind, repeats in plan if repeats > 0]
+
     def _solve_phase(
-        self, state: State, index: int, stroke: Stroke, *, distance: float = 0.0, repeats: int = 0, far: bool = False
+        self,
+        state: State,
+        index: int,
+        stroke: Stroke,
+        *,
+        plan: Plan = (),
+        distance: float = 0.0,
+        repeats: int = 0,
+        far: bool = False,
     ) -> int:
         """Bring one stroke of the cycle to equilibrium, its wear over ``distance`` implicit; return iterations.
 
+        ``plan`` is the step's, for the memory.
         ``far`` says that the last state comes from a much coarser mesh: it is then walked from, not tried first.
         """
         stage, phase = state.stage, state.phases[index]
@@ -233,6 +270,8 @@ class Stepper:
         implicit = self.scene.wear.scheme == "implicit"
         for spec in self.scene.contacts:
             stage.contacts[spec.name].compliance.Set(spec.specific_wear_rate * distance if implicit else 0.0)
+        if state.memory is not None:
+            state.memory.enter(stage.memory, plan, index)
         before, fresh = phase.vector, phase.rate is None
         work = Work()
         guesses = [before] if fresh else [before + repeats * phase.rate, before]
@@ -325,6 +364,11 @@ class Stepper:
                 log.info("%s: a new mesh is needed", error)
         remesh(state, new)
         return known
+
+
+def _without_fluid(loads: dict[str, float]) -> dict[str, float]:
+    """Loads with the sealed pressure taken off."""
+    return {name: 0.0 if "fluid" in name else value for name, value in loads.items()}
 
 
 def _at_points(contour: Contour, profile: Any, values: Array) -> Array:

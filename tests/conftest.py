@@ -69,6 +69,17 @@ mounting = 0.15
 step = "each"
 """
 
+ARMS = """
+
+[material.prony]
+moduli = [0.5, 0.4, 0.3]
+times = [0.1, 1.0, 10.0]
+reference = "long-term"
+temperature = 303.15
+shift = { law = "wlf", c1 = 17.44, c2 = 51.6, reference = 296.15 }
+"""
+REMEMBERS = (("bulk_modulus = 100.0", "bulk_modulus = 100.0" + ARMS), ("travel = 10.0", "travel = 10.0\nspeed = 20.0"))
+
 
 def pytest_addoption(parser):
     parser.addoption("--slow", action="store_true", help="also run tests/stability and tests marked slow")

@@ -10,6 +10,7 @@ import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.fields.background import Background, Seat
 from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.meshed import Meshed
@@ -40,6 +41,13 @@ class Unknowns:
     def v(self) -> Any:
         """Test displacement."""
         return self.test[DISPLACEMENT]
+
+    def seat(self, background: Background) -> Seat:
+        """The body on a background that keeps its memory."""
+        displacement = self.state[DISPLACEMENT]
+        return Seat(
+            background, body=self.body, kinematics=self.kinematics, points=self.points, displacement=displacement
+        )
 
 
 class Term(abc.ABC):

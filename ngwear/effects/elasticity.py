@@ -41,7 +41,7 @@ class Elasticity(VolumeTerm):
         return {VOLUMETRIC_STRESS: ng.H1(body.mesh, order=self.order - 1)}
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
-        self._state, self._points = unknowns.state, unknowns.points
+        self._state = unknowns.state
 
     def energy(self, strain: Array) -> Array:
         """Energy per reference volume [MPa] at strains of shape (..., n + 1)."""
@@ -61,12 +61,6 @@ class Elasticity(VolumeTerm):
                 slope[..., m, -1] = slope[..., -1, m] = by_q
             slope[..., -1, -1] = -1 / rest
         return stress, slope
-
-    def hoop_force(self, vector: Array) -> float:
-        """Radial resultant of the hoop tension of an axisymmetric part, ``2 pi int P_hoop dA`` [N]."""
-        stress, _ = self.response(self._points.strain(vector), tangent=False)
-        # The volumes are 2 pi R dA.
-        return float((self._points.volumes * stress[..., 4] / self._points.radius).sum())
 
     def volume_ratio(self) -> ng.CoefficientFunction:
         """J = 1 + p / K of the present state [-]."""

@@ -10,6 +10,7 @@ import numpy as np
 from ngwear.effects.base import Array, Unknowns
 from ngwear.effects.memory import Memory, step_factors
 from ngwear.errors import SceneError
+from ngwear.fields.background import Background
 from ngwear.materials import Hyperelastic, PronySeries
 
 
@@ -34,17 +35,29 @@ class Viscosity(Memory):
     material : Hyperelastic
         Of the long-term behaviour.
     series : PronySeries
+    background : Background or None
+        Keep the memory at its points instead of the body's own, so that it outlives the body's mesh (``take``).
     """
 
-    def __init__(self, material: Hyperelastic, series: PronySeries) -> None:
+    def __init__(self, material: Hyperelastic, series: PronySeries, *, background: Background | None = None) -> None:
         super().__init__(material, series)
+        self.background = background
         self.time_step = math.inf
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         self.lay(unknowns)
-        self.relaxed = np.zeros((len(self.times), *self.history.shape))  # q_i [MPa]
-        self._start = np.zeros_like(self.history)  # S_0
+        self._seat = None if self.background is None else unknowns.seat(self.background)
+        shape = self.history.shape if self.background is None else (*self.background.shape, 4)
+        self.relaxed = np.zeros((len(self.times), *shape))  # q_i [MPa]
+        self._start = np.zeros(shape)  # S_0
         self.set_time_step(math.inf)
+
+    def take(self, before: Viscosity) -> None:
+        """Go on with the memory of a body that this one replaces; both share the background and the arms."""
+        if self.background is None or self.background is not before.background:
+            raise SceneError("background", self.background, "memory moves to another mesh by a background of both")
+        self.relaxed, self._start = before.relaxed.copy(), before._start.copy()
+        self.set_time_step(self.time_step)
 
     def set_time_step(self, step: float) -> None:
         """Length of the step that is solved next [s], > 0; infinity for the long-term equilibrium."""
@@ -54,10 +67,11 @@ class Viscosity(Memory):
         self._decay, self._mean = step_factors(step, self.times)
         self.share = float(self.ratios @ self._mean)
         history = np.tensordot(self._decay, self.relaxed, axes=1)
-        self.history = -history - float(self.ratios @ (self._mean - self._decay)) * self._start
+        history = -history - float(self.ratios @ (self._mean - self._decay)) * self._start
+        self.history = history if self._seat is None else self._seat.at_points(history)
 
     def commit(self, strain: Array) -> None:
-        now = self.second_piola(strain)
+        now = self.second_piola(strain if self._seat is None else self._seat.strain())
         for q, ratio, decay, mean in zip(self.relaxed, self.ratios, self._decay, self._mean, strict=True):
             q *= decay
             q += ratio * ((1 - mean) * now + (mean - decay) * self._start)

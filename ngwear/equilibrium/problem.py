@@ -192,6 +192,12 @@ class Problem:
         responses = [term.response(strain, tangent=tangent) for term in self._volume]
         return sum(stress for stress, _ in responses), sum(slope for _, slope in responses) if tangent else None
 
+    def hoop_force(self) -> float:
+        """Radial resultant of the hoop tension of an axisymmetric part, ``2 pi int P_hoop dA`` [N], of all terms."""
+        stress, _ = self._response(tangent=False)
+        # The volumes are 2 pi R dA.
+        return float((self.points.volumes * stress[..., 4] / self.points.radius).sum())
+
     def tangent(self) -> DirectSolver | None:
         """Assemble and factorise the tangent at the present state; None if it is singular or not finite."""
         try:

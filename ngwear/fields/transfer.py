@@ -27,10 +27,10 @@ class PointSearch:
         mesh.UnsetDeformation()
         place = np.array(points, dtype=float)
         for _ in range(3 if deformation is not None else 0):
-            self.mapped = _inside(mesh, place)
+            self.mapped = nearest_places(mesh, place)
             moved = np.asarray(deformation(self.mapped))
             place = points - moved
-        self.mapped = _inside(mesh, place)
+        self.mapped = nearest_places(mesh, place)
         if active is not None:
             mesh.SetDeformation(active)
 
@@ -39,7 +39,8 @@ class PointSearch:
         return np.asarray(field(self.mapped)).reshape(len(self.mapped), -1)
 
 
-def _inside(mesh: ng.Mesh, points: Array) -> NDArray:
+def nearest_places(mesh: ng.Mesh, points: Array) -> NDArray:
+    """Points of a mesh that is not deformed, as its fields take them; for one outside, a point inside near to it."""
     mapped = mesh(*points.T)
     lost = np.flatnonzero(mapped["nr"] < 0)
     if len(lost) == 0:

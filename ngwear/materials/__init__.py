@@ -5,5 +5,6 @@ from ngwear.materials.mooney_rivlin import MooneyRivlin
 from ngwear.materials.neo_hooke import NeoHooke
 from ngwear.materials.prony import Folding, PronySeries
 from ngwear.materials.shift import WLF, Arrhenius
+from ngwear.materials.stiffened import Stiffened
 
-__all__ = ["WLF", "Arrhenius", "Folding", "Hyperelastic", "MooneyRivlin", "NeoHooke", "PronySeries"]
+__all__ = ["WLF", "Arrhenius", "Folding", "Hyperelastic", "MooneyRivlin", "NeoHooke", "PronySeries", "Stiffened"]

@@ -82,6 +82,17 @@ def filled_rubber() -> Compound:
     )
 
 
+def relaxation_of(name: str) -> tuple[PronySeries, WLF]:
+    """Arms and shift of a compound by name: ``"filled rubber"``, or a polymer (whose arms are the filled rubber's)."""
+    if name == "filled rubber":
+        found = filled_rubber()
+    elif name in GLASS:
+        found = compound(name, hardness=70.0)  # of which the arms' ratios know nothing
+    else:
+        raise SceneError("material.prony.compound", name, f"known: 'filled rubber', {', '.join(GLASS)}")
+    return found.prony, found.shift
+
+
 def compound(polymer: str, *, hardness: float) -> Compound:
     """A seal compound by polymer (EPDM, NBR, HNBR, FKM) and Shore A hardness.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ngwear.errors import SceneError
 
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
+MOST_DECADES = 30.0  # of a shift: beyond the whole of the glass transition
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,15 @@ class WLF:
 
     def factor(self, temperature: float) -> float:
         """``a_T = tau(T) / tau(T_r)``, above 1 when colder; temperature in K."""
-        return 10 ** (-self.c1 * (temperature - self.reference) / self._above_the_pole(temperature))
+        exponent = -self.c1 * (temperature - self.reference) / self._above_the_pole(temperature)
+        if not exponent < MOST_DECADES:
+            raise SceneError(
+                "temperature",
+                temperature,
+                f"slows relaxation by {exponent:.3g} decades: the rubber is a glass there, and the WLF law has no "
+                "meaning; give it in K",
+            )
+        return 10**exponent
 
     def _above_the_pole(self, temperature: float) -> float:
         distance = self.c2 + temperature - self.reference
@@ -84,4 +93,7 @@ class Arrhenius:
         """``a_T = tau(T) / tau(T_r)``, above 1 when colder; temperature in K."""
         if not temperature > 0:
             raise SceneError("temperature", temperature, "must be greater than 0 K")
-        return math.exp(self.activation_energy / GAS_CONSTANT * (1 / temperature - 1 / self.reference))
+        exponent = self.activation_energy / GAS_CONSTANT * (1 / temperature - 1 / self.reference)
+        if not exponent < MOST_DECADES * math.log(10):
+            raise SceneError("temperature", temperature, "slows relaxation beyond all measure; give it in K")
+        return math.exp(exponent)

@@ -17,6 +17,8 @@ CASES: dict[str, str] = {
     "convergence": "ngwear.verify.convergence",
     "locking": "ngwear.verify.locking",
     "memory": "ngwear.verify.memory",
+    "remeshed_memory": "ngwear.verify.remeshed_memory",
+    "stroke_memory": "ngwear.verify.stroke_memory",
     "hertz": "ngwear.verify.hertz",
     "hunter": "ngwear.verify.hunter",
     "three_arms": "ngwear.verify.three_arms",
@@ -28,6 +30,7 @@ CASES: dict[str, str] = {
     "stability_pair": "ngwear.verify.stability_pair",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
+    "rod_seal_filled": "ngwear.verify.rod_seal_filled",
 }
 
 __all__ = ["CASES", "Check", "verify"]

@@ -31,9 +31,9 @@ from ngwear.verify.base import Check, Stopwatch
 CASE = "rod_seal"
 
 
-def shipped_scene() -> Scene:
-    """Read geometries/rod_seal/scene.toml of this checkout."""
-    path = Path(__file__).parents[2] / "geometries" / "rod_seal" / "scene.toml"
+def shipped_scene(name: str = "scene.toml") -> Scene:
+    """Read a scene of geometries/rod_seal of this checkout."""
+    path = Path(__file__).parents[2] / "geometries" / "rod_seal" / name
     if not path.is_file():
         raise SceneError("verify", str(path), "the shipped scenes come with the repository: run this in a checkout")
     return read_scene(path)

@@ -5,7 +5,7 @@ import json
 import math
 
 import pytest
-from conftest import SHEET_OUTLINE, SHEET_SCENE
+from conftest import REMEMBERS, SHEET_OUTLINE, SHEET_SCENE, edited
 
 from ngwear.errors import NgwearError, SceneError
 from ngwear.scenefile import read_scene
@@ -61,7 +61,7 @@ def replaced(data, path, value):
 def scene_data():
     import tomllib
 
-    return tomllib.loads(SHEET_SCENE + "[save]\nstrokes = [2]\nvtk = false\n")
+    return tomllib.loads(edited(SHEET_SCENE, REMEMBERS) + "[save]\nstrokes = [2]\nvtk = false\n")
 
 
 PLACES = list(places(scene_data()))
