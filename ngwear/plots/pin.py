@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ngwear.sliding.pin import Pin, PinSlide
+from ngwear.sliding.pin import PinSlide
+from ngwear.sliding.scene import Pin
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -6,7 +6,82 @@ import math
 from dataclasses import dataclass, field
 
 from ngwear.errors import SceneError
-from ngwear.sliding.pin import Pin, PinMesh
+from ngwear.materials import Hyperelastic, PronySeries
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pin:
+    """A rigid hemisphere pressed on a rubber sheet whose bottom is bonded to a rigid plate.
+
+    Parameters
+    ----------
+    material : Hyperelastic
+        Long-term behaviour.
+    series : PronySeries or None
+        Arms at the sheet's temperature; None leaves the rubber elastic.
+    radius : float
+        Of the ball [mm].
+    load : float
+        [N].
+    thickness : float
+        Of the sheet [mm].
+    track_radius : float
+        [mm]; infinite for a straight track.
+    sheet_radius : float
+        Outer radius of the sheet [mm]; with a circular track its centre is the track's.
+    friction : float
+        Coefficient of surface friction [-].
+
+    Raises
+    ------
+    SceneError
+        For a size or load that is not positive, or a track that leaves the sheet.
+    """
+
+    material: Hyperelastic
+    series: PronySeries | None
+    radius: float = 5.0
+    load: float = 100.0
+    thickness: float = 4.0
+    track_radius: float = 16.5
+    sheet_radius: float = 30.0
+    friction: float = 0.06
+
+    def __post_init__(self) -> None:
+        for name in ("radius", "load", "thickness", "track_radius", "sheet_radius"):
+            if not getattr(self, name) > 0:
+                raise SceneError(f"pin.{name}", getattr(self, name), "must be greater than 0")
+        if not self.friction >= 0:
+            raise SceneError("pin.friction", self.friction, "must be at least 0")
+        needed = self.track_radius + 2 * self.contact_radius
+        if math.isfinite(self.track_radius) and needed > self.sheet_radius:
+            raise SceneError(
+                "pin.sheet_radius",
+                self.sheet_radius,
+                f"the track leaves the sheet: with a contact of about {self.contact_radius:.2g} mm around a track of "
+                f"{self.track_radius:g} mm take {needed:.3g} mm or more",
+            )
+
+    @property
+    def contact_radius(self) -> float:
+        """A guess between Hertz's contact on a half-space and that on a thin bonded layer [mm]."""
+        modulus = 4 * self.material.shear_modulus
+        hertz = (0.75 * self.load * self.radius / modulus) ** (1 / 3)
+        return hertz / (1 + (hertz / self.thickness) ** 2) ** 0.25
+
+
+@dataclass(frozen=True, kw_only=True)
+class PinMesh:
+    """How fine: edges in the contact, far away [mm], and the grid's columns in the contact [mm].
+
+    ``reach`` and ``beside`` are how far the block reaches along the track and across it, over the sheet's thickness.
+    """
+
+    patch: float = 0.5
+    coarse: float = 3.0
+    column: float = 0.2
+    reach: float = 5.0
+    beside: float = 3.5
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 from ngwear.materials import MooneyRivlin
 from ngwear.sliding.patch import contact_patch
-from ngwear.sliding.pin import Pin, PinMesh, PinStage
+from ngwear.sliding.pin import PinStage
+from ngwear.sliding.scene import Pin, PinMesh
 from ngwear.verify.base import Check, Stopwatch
 
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1500.0)

@@ -1,0 +1,89 @@
+"""Checked access to the tables of a TOML file: every error names the place, the value and the remedy."""
+
+from __future__ import annotations
+
+from dataclasses import MISSING, fields
+from typing import Any
+
+from ngwear.errors import SceneError
+
+
+def record(cls: Any, place: str, table: Any) -> Any:
+    """Build a dataclass from a table that has its fields as keys."""
+    if not isinstance(table, dict):
+        raise SceneError(place, table, "must be a table")
+    own = fields(cls)
+    known(f"{place}.", table, {f.name for f in own})
+    for f in own:
+        if f.default is MISSING and f.default_factory is MISSING:
+            get(table, place, f.name)
+    kind = {f.name: str(f.type) for f in own}
+    return cls(**{key: typed(f"{place}.{key}", value, kind[key]) for key, value in table.items()})
+
+
+def typed(place: str, value: Any, kind: str) -> Any:
+    """Check a TOML value against the annotation of the field that takes it."""
+    if kind.startswith("tuple[str"):
+        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
+            raise SceneError(place, value, 'must be a list of names, such as ["lip"]')
+        return tuple(value)
+    if kind.startswith("tuple[int"):
+        if not isinstance(value, list) or not all(isinstance(v, int) and not isinstance(v, bool) for v in value):
+            raise SceneError(place, value, "must be a list of whole numbers, such as [50, 100]")
+        return tuple(value)
+    if kind.startswith("tuple[float"):
+        if not isinstance(value, list):
+            raise SceneError(place, value, "must be a list of numbers, such as [3.0, 10.0]")
+        return tuple(typed(f"{place}[{i}]", v, "float") for i, v in enumerate(value))
+    if kind == "bool" and not isinstance(value, bool):
+        raise SceneError(place, value, "must be true or false")
+    if kind == "str" and not isinstance(value, str):
+        raise SceneError(place, value, "must be a text in quotes")
+    if kind == "int" and (isinstance(value, bool) or not isinstance(value, int)):
+        raise SceneError(place, value, "must be a whole number")
+    if kind.startswith("float"):
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise SceneError(place, value, "must be a number")
+        if not abs(value) < 1e15:
+            raise SceneError(place, value, "must be a finite number (below 1e15)")
+        return float(value)
+    return value
+
+
+def coordinate(place: str, value: Any, *, pair: bool) -> Any:
+    """A number, or a pair of two."""
+    if pair:
+        if not isinstance(value, list) or len(value) != 2:
+            raise SceneError(place, value, "must be two numbers [x, y]")
+        return tuple(typed(place, v, "float") for v in value)
+    return typed(place, value, "float")
+
+
+def known(prefix: str, table: dict[str, Any], allowed: set[str]) -> None:
+    """Refuse keys that are not allowed."""
+    for key, value in table.items():
+        if key not in allowed:
+            raise SceneError(f"{prefix}{key}", value, f"unknown key; known here: {sorted(allowed)}")
+
+
+def get(table: dict[str, Any], place: str, key: str) -> Any:
+    """A value that must be there."""
+    if key not in table:
+        raise SceneError(f"{place}.{key}", None, "is missing")
+    return table[key]
+
+
+def subtable(data: dict[str, Any], key: str) -> dict[str, Any]:
+    """A table that must be there."""
+    value = get(data, "scene file", key)
+    if not isinstance(value, dict):
+        raise SceneError(key, value, f"must be a table [{key}]")
+    return value
+
+
+def tables(data: dict[str, Any], key: str) -> list[dict[str, Any]]:
+    """A list of tables, empty if the key is missing."""
+    value = data.get(key, [])
+    if not isinstance(value, list):
+        raise SceneError(key, value, f"must be a list of tables [[{key}]]")
+    return value
