@@ -32,7 +32,8 @@ class Contact(Term):
 
     A surface may move along its ``approach`` by the load ``"NAME approach [mm]"``; under force control
     (``force_controlled=True``) that displacement is an unknown and the load is ``"NAME force [N]"`` (N per
-    mm of thickness in plane strain).
+    mm of thickness in plane strain). One that slides (``slides=True``) also moves across, along its approach turned
+    by +90 degrees, by the load ``"NAME slide [mm]"``.
 
     Parameters
     ----------
@@ -40,7 +41,7 @@ class Contact(Term):
     edges : sequence of str
         Names of the edges that may touch.
     surface : RigidSurface
-    force_controlled : bool
+    force_controlled, slides : bool
     modulus : float
         Shear modulus G of the body [MPa]. With the length h of a mesh edge it sets the scales of the method,
         not of the solution: ``1/c = softness h / (2 G) + kappa``, and a compliance of 1e-6 h / G (a closure of
@@ -60,6 +61,7 @@ class Contact(Term):
         surface: RigidSurface,
         *,
         force_controlled: bool = False,
+        slides: bool = False,
         modulus: float,
     ) -> None:
         super().__init__()
@@ -72,6 +74,9 @@ class Contact(Term):
         self._length = ng.Parameter(1.0)  # of the whole outline as it is meshed and worn [mm]
         kind = "force [N]" if force_controlled else "approach [mm]"
         self.loads = {f"{name} {kind}": self.load}
+        self.slid: ng.Parameter | float = 0.0
+        if slides:
+            self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
 
     @property
     def pressure_name(self) -> str:
@@ -97,7 +102,7 @@ class Contact(Term):
         u = fields[DISPLACEMENT]
         travel = fields[self.travel_name] if self.force_controlled else self.load
         ax, ay = self.surface.approach
-        return ng.x + u[0] - travel * ax, ng.y + u[1] - travel * ay
+        return ng.x + u[0] - travel * ax + self.slid * ay, ng.y + u[1] - travel * ay - self.slid * ax
 
     def gap(self, fields: dict[str, Any]) -> Any:
         """Signed distance of the deformed outline from the surface [mm]."""
