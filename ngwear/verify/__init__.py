@@ -19,6 +19,7 @@ CASES: dict[str, str] = {
     "memory": "ngwear.verify.memory",
     "hertz": "ngwear.verify.hertz",
     "hunter": "ngwear.verify.hunter",
+    "hunter_transient": "ngwear.verify.hunter_transient",
     "three_arms": "ngwear.verify.three_arms",
     "p1a": "ngwear.verify.p1a",
     "ring": "ngwear.verify.ring",
