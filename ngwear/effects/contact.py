@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
@@ -10,12 +13,39 @@ from ngwear.effects.base import DISPLACEMENT, Unknowns
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.body import Body
+from ngwear.surfaces import RigidSurface
 
 Array = NDArray[np.float64]
 
 
 class Contact(UnilateralContact):
-    """Contact on named edges of an outline; the nominal pressure is discontinuous and linear on each mesh edge."""
+    """Contact on named edges of an outline; the nominal pressure is discontinuous and linear on each mesh edge.
+
+    A surface that slides (``slides=True``) also moves across its approach, turned by +90 degrees, by the load
+    ``"NAME slide [mm]"``; all else as in ``UnilateralContact``.
+    """
+
+    def __init__(
+        self,
+        name: str,
+        edges: Sequence[str],
+        surface: RigidSurface,
+        *,
+        force_controlled: bool = False,
+        slides: bool = False,
+        modulus: float,
+    ) -> None:
+        super().__init__(name, edges, surface, force_controlled=force_controlled, modulus=modulus)
+        self.slid: ng.Parameter | None = None
+        if slides:
+            self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
+
+    def place(self, fields: dict[str, Any]) -> tuple[Any, ...]:
+        x, y = super().place(fields)
+        if self.slid is None:
+            return x, y
+        ax, ay = self.surface.approach
+        return x + self.slid * ay, y - self.slid * ax
 
     def pressure_space(self, body: Body) -> ng.FESpace:
         return ng.Compress(ng.SurfaceL2(body.mesh, order=1, definedon=body.boundary(self.edges)))
