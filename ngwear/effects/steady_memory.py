@@ -52,7 +52,11 @@ class SteadyMemory(Memory):
         self._to_points = self.grid.between(self._points.reshape(-1, self._points.shape[-1]))
 
     def set_speed(self, speed: float, wavelength: float) -> None:
-        """Sliding speed [mm/s], and the length 2 pi / k of the contact's pressure that sets the implicit share."""
+        """Sliding speed [mm/s], and the length 2 pi / k of a pressure wave that sets the implicit share.
+
+        The share moves work between the solves and their repetition, not the solution; a quarter of the pressure's own
+        wave keeps the short ones at the ends of a contact from growing in the repetition.
+        """
         if not speed > 0:
             raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest solve the equilibrium")
         gap = np.diff(self.grid.columns) / speed

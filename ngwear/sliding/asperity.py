@@ -81,6 +81,23 @@ class Asperity:
         """Four wakes, or thirty half lengths [mm]."""
         return max(WAKES * self.wake(speed), 30 * self.half_length(speed))
 
+    def block_depth(self, speed: float) -> float:
+        """Depth of the block for a speed [mm]: the one given, or deep enough for a half-plane.
+
+        Raises
+        ------
+        SceneError
+            For a speed that is not positive, or a block too small for its wake.
+        """
+        if not 0 < speed < np.inf:
+            raise SceneError("speed", speed, "sliding needs a speed above 0 mm/s; at rest solve the equilibrium")
+        least = self.least_depth(speed)
+        depth = WIDE * least if self.depth is None else self.depth
+        if depth < least:
+            wake = f"the wake of {self.wake(speed):.4g} mm at {speed:.4g} mm/s"
+            raise SceneError("asperity.depth", depth, f"too small for {wake}: take {least:.4g} mm or more")
+        return depth
+
     def loss_time(self, speed: float) -> float:
         """Mean relaxation time of the arms, weighted by their loss at this speed [s]."""
         times = np.array(self.series.times)
@@ -156,30 +173,21 @@ def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: St
         If no steady state is found.
     """
     clock = time.process_time()
-    if not 0 < speed < np.inf:
-        raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest solve the equilibrium")
-    least = asperity.least_depth(speed)
-    depth = WIDE * least if asperity.depth is None else asperity.depth
-    if depth < least:
-        raise SceneError(
-            "asperity.depth",
-            depth,
-            f"too small for the wake of {asperity.wake(speed):.4g} mm at {speed:.4g} mm/s: take {least:.4g} mm or more",
-        )
+    depth = asperity.block_depth(speed)
     half = asperity.half_length(speed)
     options = options or SteadyOptions()
     even = half / COARSE
     block, memory = _block(asperity, depth, np.array([-half, half]), even, even, STEEPEST)
     block.indent(half**2 / (4 * asperity.radius))
     work = relax(block.problem)
-    memory.set_speed(speed, 4 * half)
+    memory.set_speed(speed, half)
     work.add(solve_steady(block.problem, memory, replace(options, tolerance=max(options.tolerance, ROUGH))))
     half = 0.5 * float(np.ptp(block.ends))
     finest = float(np.clip(4 * speed * asperity.loss_time(speed), half / 40, half / 8)) / fineness
     fine, memory = _block(asperity, depth, block.ends, half / fineness, finest, min(2 / fineness, STEEPEST))
     (state,) = carry(block.problem, [block.problem.state.vec.FV().NumPy()], fine.problem)
     fine.problem.state.vec.FV().NumPy()[:] = state
-    memory.set_speed(speed, 4 * half)
+    memory.set_speed(speed, half)
     memory.history = memory.follow(fine.problem.points.strain(state))
     work.add(solve_steady(fine.problem, memory, options))
     start, end = fine.ends

@@ -21,6 +21,7 @@ CASES: dict[str, str] = {
     "stroke_memory": "ngwear.verify.stroke_memory",
     "hertz": "ngwear.verify.hertz",
     "hunter": "ngwear.verify.hunter",
+    "hunter_transient": "ngwear.verify.hunter_transient",
     "three_arms": "ngwear.verify.three_arms",
     "p1a": "ngwear.verify.p1a",
     "indentation": "ngwear.verify.indentation",

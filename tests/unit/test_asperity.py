@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from ngwear.errors import SceneError
+from ngwear.errors import ConvergenceError, SceneError
 from ngwear.materials import NeoHooke, PronySeries
 from ngwear.plots.sliding import draw_friction, draw_pressures
 from ngwear.sliding.asperity import Asperity, slide
+from ngwear.sliding.passing import slide_in_time
 
 RUBBER = NeoHooke(shear=2.0, bulk_modulus=2e4)
 ARMS = PronySeries((1.0,), (1e-3,))
@@ -61,3 +62,16 @@ def test_block_too_small_for_its_wake_is_told_how_deep_to_be():
 def test_bad_values(change):
     with pytest.raises(SceneError, match=next(iter(change))):
         cylinder(**change)
+
+
+def test_sliding_in_time_ends_in_the_steady_state():
+    passage = slide_in_time(cylinder(), 60.0, fineness=6)
+    assert passage.travel[0] == 0.0
+    assert passage.steady == pytest.approx(slide(cylinder(), 60.0, fineness=6).friction, rel=0.02)
+
+
+def test_track_too_short_for_a_steady_state_is_told():
+    with pytest.raises(ConvergenceError, match=r"slide more than 0\.3 wakes"):
+        slide_in_time(cylinder(), 60.0, fineness=6, wakes=0.3)
+    with pytest.raises(SceneError, match="wakes = 0"):
+        slide_in_time(cylinder(), 60.0, wakes=0.0)

@@ -1,0 +1,49 @@
+"""Hunter's problem in time: the cylinder pressed on a block at rest and slid until its friction no longer changes.
+
+Problem, closed form and scaling as in ``hunter``. ``sliding.passing`` marches over a block that is fixed in space with
+the exact integration of the arms, and shares with the direct steady solve only the equilibrium: neither the frame of
+the slider, nor the transport along rows, nor the iteration for the history.
+
+Both are timed in this one run (processor time). The direct solve at its default fineness is closer to the closed form
+than the march at every speed, so that a ratio of 3 means three times cheaper at equal error or better. The march is
+dear where the contact is long against V tau (fine elements, a contact hard to find) or the wake long against the
+contact (a long track). In between it needs some twenty steps and costs no more than the direct solve; the ratio over
+all speeds is what a friction curve costs.
+"""
+
+from __future__ import annotations
+
+from ngwear.materials import PronySeries
+from ngwear.sliding.asperity import Asperity, slide
+from ngwear.sliding.passing import slide_in_time
+from ngwear.verify.base import Check
+from ngwear.verify.hunter import ARM, LOAD, LONG_TERM, RADIUS, RUBBER, SCALE, SPEEDS, TIME, closed_form
+
+FINENESS = 8.0  # of the march
+DEAR = (1.0, 2000.0)  # mm/s
+
+
+def run() -> list[Check]:
+    """Friction in time at seven speeds, and what it costs over the direct solve."""
+    arms = PronySeries.from_moduli([ARM], [TIME], long_term=LONG_TERM)
+    asperity = Asperity(material=RUBBER, series=arms, radius=SCALE * RADIUS, load=LOAD / SCALE)
+    checks: list[Check] = []
+
+    def check(quantity: str, value: float, wanted: float, tolerance: float, seconds: float, bound: str) -> None:
+        checks.append(Check("hunter_transient", quantity, value, wanted, tolerance, seconds, bound=bound))
+
+    marched = solved = 0.0
+    for speed in SPEEDS:
+        exact = closed_form(speed)["friction"]
+        passage, direct = slide_in_time(asperity, speed, fineness=FINENESS), slide(asperity, speed)
+        marched, solved = marched + passage.cpu_seconds, solved + direct.cpu_seconds
+        seconds = passage.cpu_seconds + direct.cpu_seconds
+        friction, at = passage.steady * SCALE, f"at {speed:g} mm/s"
+        check(f"friction coefficient in time {at} [-]", friction, exact, 0.02, passage.cpu_seconds, "near")
+        error, allowed = abs(direct.friction * SCALE / exact - 1), abs(friction / exact - 1)
+        check(f"error of the direct solve, at most that in time, {at} [-]", error, allowed, 0.0, seconds, "below")
+        if speed in DEAR:
+            ratio = passage.cpu_seconds / direct.cpu_seconds
+            check(f"CPU seconds in time over direct {at} [-]", ratio, 3.0, 0.0, seconds, "above")
+    check("CPU seconds in time over direct, all speeds [-]", marched / solved, 3.0, 0.0, marched + solved, "above")
+    return checks
