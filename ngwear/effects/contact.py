@@ -21,13 +21,8 @@ Array = NDArray[np.float64]
 class Contact(UnilateralContact):
     """Contact on named edges of an outline; the nominal pressure is discontinuous and linear on each mesh edge.
 
-    Beside what every contact takes:
-
-    Parameters
-    ----------
-    slides : bool
-        Whether the surface also moves across, along its approach turned by +90 degrees, by the load
-        ``"NAME slide [mm]"``.
+    A surface that slides (``slides=True``) also moves across its approach, turned by +90 degrees, by the load
+    ``"NAME slide [mm]"``; all else as in ``UnilateralContact``.
     """
 
     def __init__(
@@ -41,12 +36,14 @@ class Contact(UnilateralContact):
         modulus: float,
     ) -> None:
         super().__init__(name, edges, surface, force_controlled=force_controlled, modulus=modulus)
-        self.slid: ng.Parameter | float = 0.0
+        self.slid: ng.Parameter | None = None
         if slides:
             self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
 
     def place(self, fields: dict[str, Any]) -> tuple[Any, ...]:
         x, y = super().place(fields)
+        if self.slid is None:
+            return x, y
         ax, ay = self.surface.approach
         return x + self.slid * ay, y - self.slid * ax
 
