@@ -11,6 +11,8 @@ from typing import Any
 
 from ngwear import __version__
 from ngwear.errors import NgwearError
+from ngwear.files import COMPLETED
+from ngwear.sliding.scene import PinScene
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
 
@@ -58,15 +60,21 @@ def _run(options: argparse.Namespace) -> int:
     from ngwear.scenefile import read_scene
 
     scene = read_scene(options.scene)
-    from ngwear.run import COMPLETED, run
+    how = {"out": options.out, "resume": options.resume, "progress": not options.quiet}
+    if isinstance(scene, PinScene):
+        from ngwear.sliding.run import run_pin
 
-    result = run(scene, out=options.out, resume=options.resume, progress=not options.quiet, throw=False)
-    if result.status != COMPLETED:
-        print(f"ngwear: gave up: {result.message}", file=sys.stderr)
+        summary = run_pin(scene, **how)
+    else:
+        from ngwear.run import run
+
+        summary = run(scene, **how, throw=False).summary
+    if summary["status"] != COMPLETED:
+        print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
         print(f"ngwear: what was computed until then is in {options.out}", file=sys.stderr)
         return GAVE_UP
     if not options.quiet:
-        _print_table(result.summary)
+        _print_table(summary)
         print(f"results and figures: {options.out}")
     return OK
 
@@ -95,12 +103,10 @@ def _verify(options: argparse.Namespace) -> int:
 
 
 def _explain(options: argparse.Namespace) -> int:
+    from ngwear.explain import explain
     from ngwear.scenefile import read_scene
 
-    scene = read_scene(options.scene)
-    from ngwear.explain import explain
-
-    found = explain(scene)
+    found = explain(read_scene(options.scene))
     if options.json:
         print(json.dumps(found, indent=2))
         return OK

@@ -13,6 +13,7 @@ from typing import IO, Any
 from ngwear.errors import ResultError
 
 SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.pkl"
+COMPLETED, GAVE_UP = "completed", "gave up"
 
 
 class OutFolder:

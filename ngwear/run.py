@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
+from ngwear.files import COMPLETED, GAVE_UP
 from ngwear.results import Folder, Recorder
 from ngwear.scene import Scene
 from ngwear.state import State
 from ngwear.stepper import Stepper
-
-COMPLETED, GAVE_UP = "completed", "gave up"
 
 
 @dataclass(frozen=True)

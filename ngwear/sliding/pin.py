@@ -138,7 +138,7 @@ class PinStage:
     def slide(self, speed: float, options: SteadyOptions) -> Work:
         """Find the steady state at a speed from the present one."""
         self.problem.set_loads({"pin force [N]": self.pin.load})
-        wavelength = 4 * self.pin.contact_radius
+        wavelength = self.pin.contact_radius  # a quarter of the pressure's own
         self.memory.set_speed(speed, wavelength)
         return solve_steady(self.problem, self.memory, options)
 

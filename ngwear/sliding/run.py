@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import IO, Any
 
 from ngwear import __version__
-from ngwear.files import FIELDS, SUMMARY, OutFolder
+from ngwear.files import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder
 from ngwear.sliding.pin import PinSlide, slide_pin
 from ngwear.sliding.scene import PinScene
 from ngwear.sweep import Outcome, sweep
 from ngwear.units import UNITS
 
 POINTS = "points"
-COMPLETED, GAVE_UP = "completed", "gave up"
 Pair = tuple[PinSlide, PinSlide]
 
 
