@@ -11,8 +11,6 @@ from typing import Any
 
 from ngwear import __version__
 from ngwear.errors import NgwearError
-from ngwear.files import COMPLETED
-from ngwear.sliding.scene import PinScene
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
 
@@ -57,7 +55,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    from ngwear.files import COMPLETED
     from ngwear.scenefile import read_scene
+    from ngwear.sliding.scene import PinScene
 
     scene = read_scene(options.scene)
     how = {"out": options.out, "resume": options.resume, "progress": not options.quiet}
@@ -103,10 +103,16 @@ def _verify(options: argparse.Namespace) -> int:
 
 
 def _explain(options: argparse.Namespace) -> int:
-    from ngwear.explain import explain
     from ngwear.scenefile import read_scene
+    from ngwear.sliding.scene import PinScene
 
-    found = explain(read_scene(options.scene))
+    scene = read_scene(options.scene)
+    if isinstance(scene, PinScene):
+        from ngwear.sliding.explain import explain_pin as explain
+    else:
+        from ngwear.explain import explain
+
+    found = explain(scene)
     if options.json:
         print(json.dumps(found, indent=2))
         return OK
@@ -122,8 +128,10 @@ def _explain(options: argparse.Namespace) -> int:
 
 def _plot(options: argparse.Namespace) -> int:
     from ngwear.plots.compare import compare
+    from ngwear.plots.pin import is_pin_run, plot_pin
     from ngwear.plots.wear import plot
 
-    for path in [compare(options.folder, options.against)] if options.against else plot(options.folder):
+    draw = plot_pin if is_pin_run(options.folder) else plot
+    for path in [compare(options.folder, options.against)] if options.against else draw(options.folder):
         print(path)
     return OK

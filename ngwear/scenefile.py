@@ -10,10 +10,10 @@ from typing import Any
 from ngwear.errors import SceneError
 from ngwear.geometry.contour_files import read_contour
 from ngwear.input.material import read_arms, read_material
-from ngwear.input.pin import KIND as PIN
 from ngwear.input.pin import pin_scene
 from ngwear.input.tables import coordinate, get, known, record, subtable, tables, typed
 from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
+from ngwear.sliding.scene import KIND as PIN
 from ngwear.sliding.scene import PinScene
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 

@@ -9,8 +9,6 @@ from ngwear.input.material import read_arms, read_material
 from ngwear.input.tables import get, known, record, subtable, typed
 from ngwear.sliding.scene import Pin, PinMesh, PinScene
 
-KIND = "pin on plate"
-
 
 def pin_scene(data: dict[str, Any], name: str) -> PinScene:
     """Build the scene from the tables of its file.

@@ -1,35 +1,131 @@
-"""Pictures of a pin on a plate."""
+"""Pictures of a pin on a plate, from the file of a run."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ngwear.sliding.pin import PinSlide
-from ngwear.sliding.scene import Pin
+from ngwear.errors import ResultError
+from ngwear.sliding.scene import KIND
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WHOLE, SURFACE, INTERNAL, HEAT = "#222222", "#1b6ca8", "#d1495b", "#e8871e"
+Array = NDArray[np.float64]
+WHOLE, SURFACE, INTERNAL = "#222222", "#1b6ca8", "#d1495b"
 
 
-def draw_friction(slides: Sequence[PinSlide]) -> Figure:
+@dataclass(frozen=True)
+class SheetPicture:
+    """The sheet's top at one speed: contact's edge from above, deformed faces [mm] and their pressures [MPa]."""
+
+    speed: float
+    edge: Array
+    corners: Array
+    pressure: Array
+
+    @property
+    def loaded(self) -> NDArray[np.bool_]:
+        """Faces that carry more than a hundredth of the peak."""
+        return self.pressure > 0.01 * self.pressure.max()
+
+
+@dataclass(frozen=True)
+class PinFile:
+    """What a run has left: columns as in ``series.csv`` in the order of speed, and the sheet at each speed."""
+
+    thickness: float
+    series: dict[str, Array]
+    sheets: list[SheetPicture]
+
+
+def is_pin_run(folder: Path | str) -> bool:
+    """Whether the folder's result is that of a pin on a plate."""
+    import h5py
+
+    try:
+        with h5py.File(Path(folder) / "result.h5", "r") as h5:
+            return h5.attrs.get("kind") == KIND
+    except OSError:
+        return False
+
+
+def read_pin(folder: Path | str) -> PinFile:
+    """Read a run's ``result.h5``.
+
+    Raises
+    ------
+    ResultError
+        If the file is missing or damaged.
+    """
+    import h5py
+
+    file = Path(folder) / "result.h5"
+    try:
+        with h5py.File(file, "r") as h5:
+            series: dict[str, Array] = {}
+            # A column such as "speed [mm/s]" holds a slash, which HDF5 reads as a path.
+            h5["series"].visititems(
+                lambda name, item: series.__setitem__(name, item[()]) if isinstance(item, h5py.Dataset) else None
+            )
+            order = np.argsort(series["speed [mm/s]"])
+            groups = [h5[f"speeds/{k:03d}"] for k in order]
+            sheets = [
+                SheetPicture(
+                    float(g.attrs["speed [mm/s]"]),
+                    g["edge of the contact [mm]"][()],
+                    g["faces/corners, deformed [mm]"][()],
+                    g["faces/pressure [MPa]"][()],
+                )
+                for g in groups
+            ]
+            return PinFile(float(h5.attrs["thickness [mm]"]), {k: v[order] for k, v in series.items()}, sheets)
+    except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
+        raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
+
+
+def plot_pin(folder: Path | str) -> list[Path]:
+    """Draw friction, contact, and the sheet at the slowest and the fastest speed; return the files.
+
+    Raises
+    ------
+    ResultError
+        If the result cannot be read or the pictures cannot be written.
+    """
+    result = read_pin(folder)
+    drawn = {
+        "friction": friction_figure(result),
+        "contact": contact_figure(result),
+        "sheet_slowest": sheet_figure(result, 0),
+        "sheet_fastest": sheet_figure(result, -1),
+    }
+    for name, figure in drawn.items():
+        try:
+            figure.savefig(Path(folder) / f"{name}.png", dpi=130)
+        except OSError as error:
+            raise ResultError(f"{Path(folder) / name}.png cannot be written: {error.strerror}") from error
+    return [Path(folder) / f"{name}.png" for name in drawn]
+
+
+def friction_figure(result: PinFile) -> Figure:
     """Friction coefficient against speed and its parts, by force and by energy."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8, 4.5), layout="constrained")
     axis = figure.subplots()
-    ordered = sorted(slides, key=lambda s: s.speed)
-    speed = [s.speed for s in ordered]
-    axis.semilogx(speed, [s.friction for s in ordered], "o-", color=WHOLE, label="whole")
-    axis.semilogx(speed, [s.surface_friction for s in ordered], "s-", color=SURFACE, label="from surface friction")
-    axis.semilogx(speed, [s.internal_friction for s in ordered], "s-", color=INTERNAL, label="from the pressure")
-    axis.semilogx(speed, [s.slip_work for s in ordered], "--", color=SURFACE, label="heat of the slip")
-    axis.semilogx(speed, [s.dissipation for s in ordered], "--", color=INTERNAL, label="heat in the rubber")
+    for column, style, colour, label in (
+        ("friction coefficient [-]", "o-", WHOLE, "whole"),
+        ("from surface friction [-]", "s-", SURFACE, "from surface friction"),
+        ("from the pressure [-]", "s-", INTERNAL, "from the pressure"),
+        ("heat of the slip over load and track [-]", "--", SURFACE, "heat of the slip"),
+        ("heat in the rubber over load and track [-]", "--", INTERNAL, "heat in the rubber"),
+    ):
+        axis.semilogx(result.series["speed [mm/s]"], result.series[column], style, color=colour, label=label)
     axis.set_ylim(bottom=0)
     axis.set_xlabel("sliding speed [mm/s]")
     axis.set_ylabel("friction coefficient [-]")
@@ -38,17 +134,16 @@ def draw_friction(slides: Sequence[PinSlide]) -> Figure:
     return figure
 
 
-def draw_contact(slides: Sequence[PinSlide]) -> Figure:
+def contact_figure(result: PinFile) -> Figure:
     """Penetration and contact area against speed."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8, 4.5), layout="constrained")
     left = figure.subplots()
     right = left.twinx()
-    ordered = sorted(slides, key=lambda s: s.speed)
-    speed = [s.speed for s in ordered]
-    (depth,) = left.semilogx(speed, [s.depth for s in ordered], "o-", color=SURFACE)
-    (area,) = right.semilogx(speed, [s.patch.area for s in ordered], "s-", color=INTERNAL)
+    speed, series = result.series["speed [mm/s]"], result.series
+    (depth,) = left.semilogx(speed, series["penetration [mm]"], "o-", color=SURFACE)
+    (area,) = right.semilogx(speed, series["contact area [mm²]"], "s-", color=INTERNAL)
     left.set_xlabel("sliding speed [mm/s]")
     left.set_ylabel("penetration [mm]", color=SURFACE)
     right.set_ylabel("contact area [mm²]", color=INTERNAL)
@@ -59,58 +154,52 @@ def draw_contact(slides: Sequence[PinSlide]) -> Figure:
     return figure
 
 
-def draw_sheet(pin: Pin, slide: PinSlide) -> Figure:
-    """The deformed sheet with its pressure: from the side in perspective, and the contact from above."""
+def sheet_figure(result: PinFile, number: int) -> Figure:
+    """The deformed sheet with its pressure: in perspective, and the contact from above."""
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 
+    sheet, depth = result.sheets[number], result.series["penetration [mm]"][number]
     figure = Figure(figsize=(13, 5.2), layout="constrained")
     grid = figure.add_gridspec(1, 2, width_ratios=(1.3, 1))
     space = figure.add_subplot(grid[0], projection="3d")
     above = figure.add_subplot(grid[1])
-    colours = ScalarMappable(Normalize(0.0, slide.peak), "viridis")
-    _draw_surface(space, pin, slide, colours)
-    _draw_patch(above, slide, colours)
+    colours = ScalarMappable(Normalize(0.0, sheet.pressure.max()), "viridis")
+    _draw_surface(space, sheet, result.thickness, colours)
+    _draw_patch(above, sheet, colours)
     figure.colorbar(colours, ax=above, label="contact pressure [MPa]")
-    figure.suptitle(f"{slide.speed:g} mm/s, the pin moves towards +x; penetration {slide.depth:.3f} mm")
+    figure.suptitle(f"{sheet.speed:g} mm/s, the pin moves towards +x; penetration {depth:.3f} mm")
     return figure
 
 
-def _loaded(slide: PinSlide) -> np.ndarray:
-    """Faces that carry more than a rounding of the peak."""
-    return slide.faces.pressure > 0.01 * slide.peak
-
-
-def _draw_surface(axis: Axes, pin: Pin, slide: PinSlide, colours: object) -> None:
+def _draw_surface(axis: Axes, sheet: SheetPicture, thickness: float, colours: object) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
-    corners = slide.faces.corners
-    reach = np.ptp(slide.patch.edge[:, 0])
-    shown = np.abs(corners[..., :2]).max(axis=(1, 2)) < 1.2 * reach
-    faces = Poly3DCollection(corners[shown], edgecolors="0.3", linewidths=0.15)
-    colour = colours.to_rgba(slide.faces.pressure[shown])
-    colour[~_loaded(slide)[shown]] = (0.88, 0.88, 0.88, 1.0)
+    reach = np.ptp(sheet.edge[:, 0])
+    shown = np.abs(sheet.corners[..., :2]).max(axis=(1, 2)) < 1.2 * reach
+    faces = Poly3DCollection(sheet.corners[shown], edgecolors="0.3", linewidths=0.15)
+    colour = colours.to_rgba(sheet.pressure[shown])
+    colour[~sheet.loaded[shown]] = (0.88, 0.88, 0.88, 1.0)
     faces.set_facecolor(colour)
     axis.add_collection3d(faces)
     axis.set_xlim(-reach, reach)
     axis.set_ylim(-reach, reach)
-    axis.set_zlim(0, 1.1 * pin.thickness)
-    axis.set_box_aspect((2 * reach, 2 * reach, 1.1 * pin.thickness), zoom=1.25)
+    axis.set_zlim(0, 1.1 * thickness)
+    axis.set_box_aspect((2 * reach, 2 * reach, 1.1 * thickness), zoom=1.25)
     axis.view_init(elev=32, azim=-62)
     axis.set_xlabel("x [mm]")
     axis.set_ylabel("y [mm]")
     axis.set_zlabel("z [mm]")
 
 
-def _draw_patch(axis: Axes, slide: PinSlide, colours: object) -> None:
+def _draw_patch(axis: Axes, sheet: SheetPicture, colours: object) -> None:
     from matplotlib.collections import PolyCollection
 
-    loaded = _loaded(slide)
-    patch = PolyCollection(slide.faces.corners[loaded][..., :2], edgecolors="face", linewidths=0.2)
-    patch.set_facecolor(colours.to_rgba(slide.faces.pressure[loaded]))
+    patch = PolyCollection(sheet.corners[sheet.loaded][..., :2], edgecolors="face", linewidths=0.2)
+    patch.set_facecolor(colours.to_rgba(sheet.pressure[sheet.loaded]))
     axis.add_collection(patch)
-    edge = np.vstack([slide.patch.edge, slide.patch.edge[:1]])
+    edge = np.vstack([sheet.edge, sheet.edge[:1]])
     axis.plot(*edge.T, color="#d1495b", lw=1.5, label="contact's edge")
     axis.plot(0, 0, "w+")
     axis.set_aspect("equal")

@@ -29,6 +29,7 @@ from ngwear.sliding.scene import Pin, PinMesh
 from ngwear.surfaces import Sphere
 
 Array = NDArray[np.float64]
+COARSER = 1.6
 ROUGH = 2e-3  # change of the history in the last round: the jumps of gradient from element to element do not settle
 
 
@@ -213,8 +214,7 @@ def slide_pin(
         raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
     mesh, options = mesh or PinMesh(), options or SteadyOptions(tolerance=ROUGH)
     clock = time.process_time()
-    rough = replace(mesh, patch=1.6 * mesh.patch, column=1.6 * mesh.column)
-    coarse = PinStage(pin, rough, (0.0, 0.0, pin.contact_radius))
+    coarse = PinStage(pin, coarsened(mesh), (0.0, 0.0, pin.contact_radius))
     work = coarse.press()
     work.add(coarse.slide(speed, options))
     first = coarse.result(speed, work, time.process_time() - clock)
@@ -224,6 +224,11 @@ def slide_pin(
     if vtk is not None:
         fine.write_vtk(vtk / f"sheet_{speed:g}_mm_s")
     return first, fine.result(speed, work, time.process_time() - clock)
+
+
+def coarsened(mesh: PinMesh) -> PinMesh:
+    """The mesh that a slide starts on."""
+    return replace(mesh, patch=COARSER * mesh.patch, column=COARSER * mesh.column)
 
 
 def _seeds(disc: tuple[float, float, float], size: float, high: float) -> tuple[Array, Array]:

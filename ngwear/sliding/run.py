@@ -11,7 +11,7 @@ from typing import IO, Any
 from ngwear import __version__
 from ngwear.files import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder
 from ngwear.sliding.pin import PinSlide, slide_pin
-from ngwear.sliding.scene import PinScene
+from ngwear.sliding.scene import KIND, PinScene
 from ngwear.sweep import Outcome, sweep
 from ngwear.units import UNITS
 
@@ -68,7 +68,9 @@ def run_pin(
     folder.replace(FIELDS, lambda file: _hdf5(file, scene, pairs, summary))
     folder.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
     if figures and pairs:
-        draw(folder.path, scene, [fine for _, fine in pairs])
+        from ngwear.plots.pin import plot_pin
+
+        plot_pin(folder.path)
     return summary
 
 
@@ -128,28 +130,16 @@ def _hdf5(file: IO[bytes], scene: PinScene, pairs: list[Pair], summary: dict[str
     import h5py
 
     with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"], h5.attrs["scene"] = __version__, scene.name
+        h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = __version__, scene.name, KIND
+        h5.attrs["thickness [mm]"] = scene.pin.thickness
         h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(summary)
         rows = [row(*pair) for pair in pairs]
         for column in rows[0] if rows else ():
-            h5[f"series/{column.replace('/', ' per ')}"] = [r[column] for r in rows]
+            h5[f"series/{column}"] = [r[column] for r in rows]
         for number, (_, slide) in enumerate(pairs):
             group = h5.create_group(f"speeds/{number:03d}")
-            group.attrs["speed [mm per s]"] = slide.speed
+            group.attrs["speed [mm/s]"] = slide.speed
             group["edge of the contact [mm]"] = slide.patch.edge
             group["faces/corners, deformed [mm]"] = slide.faces.corners
             group["faces/centres, undeformed [mm]"] = slide.faces.reference
             group["faces/pressure [MPa]"] = slide.faces.pressure
-
-
-def draw(path: Path, scene: PinScene, slides: list[PinSlide]) -> list[Path]:
-    """Draw friction, contact, and the sheet at the slowest and the fastest speed; return the files."""
-    from ngwear.plots.pin import draw_contact, draw_friction, draw_sheet
-
-    ordered = sorted(slides, key=lambda s: s.speed)
-    drawn = {"friction.png": draw_friction(slides), "contact.png": draw_contact(slides)}
-    drawn["sheet_slowest.png"] = draw_sheet(scene.pin, ordered[0])
-    drawn["sheet_fastest.png"] = draw_sheet(scene.pin, ordered[-1])
-    for name, figure in drawn.items():
-        figure.savefig(path / name, dpi=130)
-    return [path / name for name in drawn]

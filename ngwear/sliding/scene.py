@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from ngwear.errors import SceneError
 from ngwear.materials import Hyperelastic, PronySeries
 
+KIND = "pin on plate"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Pin:
@@ -75,6 +77,11 @@ class PinMesh:
     """How fine: edges in the contact, far away [mm], and the grid's columns in the contact [mm].
 
     ``reach`` and ``beside`` are how far the block reaches along the track and across it, over the sheet's thickness.
+
+    Raises
+    ------
+    SceneError
+        For a size that is not positive.
     """
 
     patch: float = 0.5
@@ -82,6 +89,13 @@ class PinMesh:
     column: float = 0.2
     reach: float = 5.0
     beside: float = 3.5
+
+    def __post_init__(self) -> None:
+        for name in ("patch", "coarse", "column", "reach", "beside"):
+            if not 0 < getattr(self, name) < math.inf:
+                raise SceneError(f"accuracy.{name}", getattr(self, name), "must be finite and greater than 0")
+        if self.coarse < self.patch:
+            raise SceneError("accuracy.coarse", self.coarse, "must be at least the patch size")
 
 
 @dataclass(frozen=True, kw_only=True)

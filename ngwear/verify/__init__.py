@@ -25,6 +25,7 @@ CASES: dict[str, str] = {
     "three_arms": "ngwear.verify.three_arms",
     "p1a": "ngwear.verify.p1a",
     "indentation": "ngwear.verify.indentation",
+    "pin_on_plate": "ngwear.verify.pin_on_plate",
     "ring": "ngwear.verify.ring",
     "block_on_ring": "ngwear.verify.block_on_ring",
     "worn_cylinder": "ngwear.verify.worn_cylinder",

@@ -9,7 +9,7 @@ from ngwear.errors import SceneError
 from ngwear.verify import CASES, verify
 from ngwear.verify.base import Check
 
-SLOW = ("hunter_transient", "rod_seal", "rod_seal_jumps")
+SLOW = ("hunter_transient", "pin_on_plate", "rod_seal", "rod_seal_jumps", "rod_seal_filled")
 QUICK = tuple(case for case in CASES if case not in SLOW)
 # Missed, with the reason in the case's docstring; a check that comes to pass must leave this list.
 MISSED = {

@@ -1,0 +1,135 @@
+"""Runs of a pin on a plate from the command line: files, resumption, pictures, and what is refused."""
+
+import csv
+import io
+import json
+
+import h5py
+import pytest
+
+from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
+from ngwear.errors import SceneError
+from ngwear.scenefile import read_scene
+
+SCENE = """
+[scene]
+kind = "pin on plate"
+[material]
+model = "mooney-rivlin"
+c10 = 0.6
+c01 = 0.15
+bulk_modulus = 1500.0
+[material.prony]
+moduli = [1.0]
+times = [1e-3]
+reference = "long-term"
+[pin]
+load = 10.0
+friction = 0.06
+[program]
+speeds = [100.0, 3000.0]
+[accuracy]
+patch = 1.0
+column = 0.5
+reach = 2.5
+beside = 2.0
+"""
+
+
+def write(folder, text=SCENE):
+    file = folder / "scene.toml"
+    file.write_text(text, encoding="utf-8")
+    return str(file)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("pin")
+    assert main(["run", write(folder), "--out", str(folder / "out"), "--quiet"]) == OK
+    return folder
+
+
+def test_files_of_a_run(finished):
+    out = finished / "out"
+    rows = list(csv.DictReader(io.StringIO((out / "series.csv").read_text(encoding="utf-8"))))
+    assert [float(row["speed [mm/s]"]) for row in rows] == [100.0, 3000.0]
+    assert all("[" in column for column in rows[0])
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["status"] == "completed"
+    assert summary["maximum depth [mm]"] == pytest.approx(float(rows[0]["penetration [mm]"]))
+    assert {"peak pressure [MPa]", "solves", "retries", "error estimates", "CPU time [s]"} <= set(summary)
+    with h5py.File(out / "result.h5") as h5:
+        assert h5["speeds/000/faces/pressure [MPa]"].shape == h5["speeds/000/faces/centres, undeformed [mm]"].shape[:1]
+    assert {"friction.png", "contact.png", "sheet_slowest.png", "sheet_fastest.png"} <= {p.name for p in out.iterdir()}
+
+
+def test_figures_are_drawn_again(finished, capsys):
+    (finished / "out" / "friction.png").unlink()
+    assert main(["plot", str(finished / "out")]) == OK
+    assert "friction.png" in capsys.readouterr().out
+    assert (finished / "out" / "friction.png").stat().st_size > 10_000
+
+
+def test_folder_of_a_run_is_not_overwritten(finished, capsys):
+    assert main(["run", write(finished), "--out", str(finished / "out"), "--quiet"]) == BAD_INPUT
+    assert "--resume" in capsys.readouterr().err
+
+
+def test_resumed_run_does_only_what_is_missing(finished):
+    points = finished / "out" / "points"
+    before = {p.name: p.stat().st_mtime_ns for p in points.iterdir()}
+    next(points.iterdir()).unlink()
+    assert main(["run", write(finished), "--out", str(finished / "out"), "--quiet", "--resume"]) == OK
+    after = {p.name: p.stat().st_mtime_ns for p in points.iterdir()}
+    assert set(after) == set(before)
+    assert sum(after[name] != before[name] for name in before) == 1
+
+
+def test_run_that_loses_a_speed_keeps_the_others(finished, tmp_path, capsys, monkeypatch):
+    from ngwear.sliding import run as module
+    from ngwear.sweep import Failure, Outcome
+
+    real = module.sweep
+
+    def loses_one(*args, **kwargs):
+        first, second = real(*args, **kwargs)
+        return [first, Outcome(second.point, failure=Failure("ConvergenceError", "no steady state", ""))]
+
+    monkeypatch.setattr(module, "sweep", loses_one)
+    out = str(finished / "out")
+    assert main(["run", write(finished), "--out", out, "--quiet", "--resume"]) == GAVE_UP
+    assert "3000 mm/s: no steady state" in capsys.readouterr().err
+    assert json.loads((finished / "out" / "summary.json").read_text())["speeds done [-]"] == 1
+
+
+def test_explain_tells_the_arms(tmp_path, capsys):
+    assert main(["explain", write(tmp_path), "--json"]) == OK
+    found = json.loads(capsys.readouterr().out)
+    assert found["kind"] == "pin on plate"
+    assert list(found["arms of the memory"]) == ["0.001 s"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "place"),
+    [
+        ("speeds = [100.0, 3000.0]", "speeds = [0.0]", r"program\.speeds\[0\]"),
+        ("speeds = [100.0, 3000.0]", "speeds = [5.0, 5.0]", r"program\.speeds\[1\].*twice"),
+        ("speeds = [100.0, 3000.0]", "speeds = []", r"program\.speeds"),
+        ("speeds = [100.0, 3000.0]", "speeds = 5.0", r"program\.speeds.*list of numbers"),
+        ("load = 10.0", "load = 10.0\ntrack_radius = 29.0", "track leaves the sheet"),
+        ("load = 10.0", "load = -10.0", r"pin\.load"),
+        ("load = 10.0", "loud = 10.0", r"pin\.loud.*unknown key"),
+        ("patch = 1.0", "patch = 0.0", r"accuracy\.patch"),
+        ("times = [1e-3]", "times = [-1e-3]", r"material\.prony\.times\[0\]"),
+        ('kind = "pin on plate"', 'kind = "pin"', r"scene\.kind"),
+    ],
+)
+def test_bad_input_names_the_place(tmp_path, old, new, place):
+    with pytest.raises(SceneError, match=place):
+        read_scene(write(tmp_path, SCENE.replace(old, new)))
+
+
+def test_scene_without_memory_is_refused(tmp_path):
+    start, end = SCENE.index("[material.prony]"), SCENE.index("[pin]")
+    with pytest.raises(SceneError, match=r"material\.prony.*is missing"):
+        read_scene(write(tmp_path, SCENE[:start] + SCENE[end:]))
