@@ -148,7 +148,7 @@ def contact_figure(result: PinFile) -> Figure:
     left.set_ylabel("penetration [mm]", color=SURFACE)
     right.set_ylabel("contact area [mm²]", color=INTERNAL)
     left.set_ylim(0, 1.25 * depth.get_ydata().max())
-    right.set_ylim(0, 1.25 * area.get_ydata().max())
+    right.set_ylim(0, 1.6 * area.get_ydata().max())
     left.grid(alpha=0.3, which="both")
     left.legend([depth, area], ["penetration", "contact area"], loc="lower left")
     return figure
