@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ngwear.effects.steady_memory import SteadyMemory
-from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, relax, settle
 from ngwear.errors import ConvergenceError
@@ -26,15 +25,11 @@ class SteadyOptions:
     max_rounds : int
     memory : int
         Earlier rounds that Anderson's acceleration combines.
-    newton : NewtonOptions
-        Of each round. A body some thousand times as wide as its contact needs a tolerance far below the usual one:
-        what a solve leaves open, the acceleration takes for history.
     """
 
     tolerance: float = 1e-4
     max_rounds: int = 60
     memory: int = 8
-    newton: NewtonOptions = field(default_factory=lambda: NewtonOptions(tolerance=1e-9))
 
 
 def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions | None = None) -> Work:
@@ -46,15 +41,15 @@ def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions 
         If a solve fails, or the history has not been found after ``max_rounds``.
     """
     options = options or SteadyOptions()
-    work, steps = Work(), StepOptions(newton=options.newton)
+    work = Work()
     tried: deque[np.ndarray] = deque(maxlen=options.memory + 1)
     missed: deque[np.ndarray] = deque(maxlen=options.memory + 1)
     volumes = np.sqrt(problem.points.volumes)[..., None]
     memory.history = memory.follow(problem.points.strain(problem.state.vec.FV().NumPy()))
     for _ in range(options.max_rounds):
-        report = settle(problem, steps, work)
+        report = settle(problem, StepOptions(), work)
         if not report.converged:
-            work.add(relax(problem, replace(steps, first=0.25)))
+            work.add(relax(problem, StepOptions(first=0.25)))
         found = memory.follow(problem.points.strain(problem.state.vec.FV().NumPy()))
         miss = found - memory.history
         error = np.linalg.norm(volumes * miss) / np.linalg.norm(volumes * found)

@@ -188,7 +188,6 @@ def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: St
     (state,) = carry(block.problem, [block.problem.state.vec.FV().NumPy()], fine.problem)
     fine.problem.state.vec.FV().NumPy()[:] = state
     memory.set_speed(speed, half)
-    memory.history = memory.follow(fine.problem.points.strain(state))
     work.add(solve_steady(fine.problem, memory, options))
     start, end = fine.ends
     profile = fine.contact.profile()
