@@ -4,23 +4,33 @@ Problem, closed form and scaling as in ``hunter``. ``sliding.passing`` marches o
 the exact integration of the arms, and shares with the direct steady solve only the equilibrium: neither the frame of
 the slider, nor the transport along rows, nor the iteration for the history.
 
-Both are timed in this one run (processor time). The direct solve at its default fineness is closer to the closed form
-than the march at every speed, so that a ratio of 3 means three times cheaper at equal error or better. The march is
-dear where the contact is long against V tau (fine elements, a contact hard to find) or the wake long against the
-contact (a long track). In between it needs some twenty steps and costs no more than the direct solve; the ratio over
-all speeds is what a friction curve costs.
+Both are timed in this one run (processor time). The direct solve takes the coarsest of four meshes whose friction is at
+least as close to the closed form as the march's, so that a ratio of 3 means three times cheaper at equal error or
+better. The march is dear where the contact is long against V tau (fine elements, a contact hard to find) or the wake
+long against the contact (a long track). In between it needs some twenty steps and costs little more than the direct
+solve; the ratio over all speeds is what a friction curve costs.
 """
 
 from __future__ import annotations
 
 from ngwear.materials import PronySeries
-from ngwear.sliding.asperity import Asperity, slide
+from ngwear.sliding.asperity import Asperity, Slide, slide
 from ngwear.sliding.passing import slide_in_time
 from ngwear.verify.base import Check
 from ngwear.verify.hunter import ARM, LOAD, LONG_TERM, RADIUS, RUBBER, SCALE, SPEEDS, TIME, closed_form
 
 FINENESS = 8.0  # of the march
+DIRECT = (4.0, 6.0, 8.0, 12.0)  # of the direct solve
 DEAR = (1.0, 2000.0)  # mm/s
+
+
+def at_least_as_close(asperity: Asperity, speed: float, wanted: float, allowed: float) -> Slide:
+    """The direct solve on the coarsest mesh whose friction is off by no more than allowed [-], else on the finest."""
+    for fineness in DIRECT:
+        found = slide(asperity, speed, fineness=fineness)
+        if abs(found.friction - wanted) <= allowed:
+            break
+    return found
 
 
 def run() -> list[Check]:
@@ -34,14 +44,17 @@ def run() -> list[Check]:
 
     marched = solved = 0.0
     for speed in SPEEDS:
-        exact = closed_form(speed)["friction"]
-        passage, direct = slide_in_time(asperity, speed, fineness=FINENESS), slide(asperity, speed)
+        exact = closed_form(speed)["friction"] / SCALE
+        passage = slide_in_time(asperity, speed, fineness=FINENESS)
+        allowed = abs(passage.steady - exact)
+        direct = at_least_as_close(asperity, speed, exact, allowed)
         marched, solved = marched + passage.cpu_seconds, solved + direct.cpu_seconds
         seconds = passage.cpu_seconds + direct.cpu_seconds
         friction, at = passage.steady * SCALE, f"at {speed:g} mm/s"
-        check(f"friction coefficient in time {at} [-]", friction, exact, 0.02, passage.cpu_seconds, "near")
-        error, allowed = abs(direct.friction * SCALE / exact - 1), abs(friction / exact - 1)
-        check(f"error of the direct solve, at most that in time, {at} [-]", error, allowed, 0.0, seconds, "below")
+        check(f"friction coefficient in time {at} [-]", friction, exact * SCALE, 0.02, passage.cpu_seconds, "near")
+        off = abs(direct.friction - exact)
+        quantity = f"relative error of the direct solve, at most that in time, {at} [-]"
+        check(quantity, off / exact, allowed / exact, 0.0, seconds, "below")
         if speed in DEAR:
             ratio = passage.cpu_seconds / direct.cpu_seconds
             check(f"CPU seconds in time over direct {at} [-]", ratio, 3.0, 0.0, seconds, "above")
