@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import ResultError, SceneError
+from ngwear.files import OutFolder
 
 ONE_THREAD = ("NGS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 IMPORTABLE = "define it at the top of a module; functools.partial(function, fixed) keeps arguments that do not vary"
@@ -213,14 +214,10 @@ class _Store:
     """Results in a folder, one pickle a point, each written at once and whole."""
 
     def __init__(self, path: Path) -> None:
-        self.path = path
-        try:
-            path.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise ResultError(f"{path} cannot be used as the folder of a sweep: {error}") from error
+        self.folder = OutFolder(path, "", resume=True)
 
     def load(self, key: str, point: Any) -> Outcome | None:
-        file = self.path / f"{key}.pickle"
+        file = self.folder.path / f"{key}.pickle"
         if not file.exists():
             return None
         try:
@@ -230,15 +227,11 @@ class _Store:
 
     def save(self, key: str, result: Any) -> Any:
         """The result, or the failure to write it."""
-        file = self.path / f"{key}.pickle"
-        part = file.with_suffix(f".{os.getpid()}.part")
         try:
-            part.write_bytes(pickle.dumps(result))
+            data = pickle.dumps(result)
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             return Failure.of(error)
-        except OSError as error:
-            raise ResultError(f"{part} cannot be written: {error}") from error
-        part.replace(file)
+        self.folder.replace(f"{key}.pickle", lambda file: file.write(data))
         return result
 
 
