@@ -62,7 +62,7 @@ def _run(options: argparse.Namespace) -> int:
     scene = read_scene(options.scene)
     how = {"out": options.out, "resume": options.resume, "progress": not options.quiet}
     if isinstance(scene, PinScene):
-        from ngwear.sliding.run import run_pin
+        from ngwear.run_pin import run_pin
 
         summary = run_pin(scene, **how)
     else:

@@ -20,8 +20,8 @@ import numpy as np
 
 from ngwear.errors import SceneError
 from ngwear.plots.pin import read_pin
+from ngwear.run_pin import run_pin
 from ngwear.scenefile import read_scene
-from ngwear.sliding.run import run_pin
 from ngwear.sliding.scene import PinScene
 from ngwear.verify.base import Check
 

@@ -86,7 +86,7 @@ def test_resumed_run_does_only_what_is_missing(finished):
 
 
 def test_run_that_loses_a_speed_keeps_the_others(finished, tmp_path, capsys, monkeypatch):
-    from ngwear.sliding import run as module
+    from ngwear import run_pin as module
     from ngwear.sweep import Failure, Outcome
 
     real = module.sweep
