@@ -10,6 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ngwear.errors import ResultError
 
 SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.pkl"
@@ -79,3 +82,26 @@ class OutFolder:
         for left in self.path.glob(".*.*"):
             if left.name.startswith(tuple(f".{name}." for name in (SERIES, FIELDS, SUMMARY, CHECKPOINT))):
                 left.unlink(missing_ok=True)
+
+
+def put_series(h5: Any, rows: list[dict[str, Any]]) -> None:
+    """Write the columns of ``series.csv`` into an open HDF5 file."""
+    import h5py
+
+    group = h5.create_group("series")
+    for column in rows[0] if rows else ():
+        values = [row[column] for row in rows]
+        group[column] = np.array(values, dtype=h5py.string_dtype()) if isinstance(values[0], str) else values
+
+
+def get_series(h5: Any) -> dict[str, NDArray[Any]]:
+    """The columns again. One such as "force x [N/mm]" holds a slash, which HDF5 reads as a path."""
+    series: dict[str, NDArray[Any]] = {}
+
+    def take(name: str, item: Any) -> None:
+        if hasattr(item, "dtype"):
+            values = item[()]
+            series[name] = values.astype(str) if values.dtype.kind in "OS" else values
+
+    h5["series"].visititems(take)
+    return series

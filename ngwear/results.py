@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ngwear import __version__
 from ngwear.errors import ResultError
-from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder
+from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, put_series
 from ngwear.geometry.contour import Contour
 from ngwear.scene import Scene
 from ngwear.units import UNITS, force_unit
@@ -244,10 +244,7 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         outline["points [mm]"] = scene.contour.points
         outline["edges"] = np.array(scene.contour.names, dtype=h5py.string_dtype())
         outline.attrs["provenance"] = scene.contour.provenance
-        series = h5.create_group("series")
-        for column in recorder.rows[0] if recorder.rows else ():
-            values = [row[column] for row in recorder.rows]
-            series[column] = np.array(values, dtype=h5py.string_dtype()) if isinstance(values[0], str) else values
+        put_series(h5, recorder.rows)
         strokes = h5.create_group("strokes")
         for number, snapshot in enumerate(recorder.snapshots):
             group = strokes.create_group(f"{number:05d}")

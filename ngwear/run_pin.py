@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ngwear import __version__
-from ngwear.files import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder
+from ngwear.files import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
 from ngwear.sliding.pin import PinSlide, slide_pin
 from ngwear.sliding.scene import KIND, PinScene
 from ngwear.sweep import Outcome, sweep
@@ -133,9 +133,7 @@ def _hdf5(file: IO[bytes], scene: PinScene, pairs: list[Pair], summary: dict[str
         h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = __version__, scene.name, KIND
         h5.attrs["thickness [mm]"] = scene.pin.thickness
         h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(summary)
-        rows = [row(*pair) for pair in pairs]
-        for column in rows[0] if rows else ():
-            h5[f"series/{column}"] = [r[column] for r in rows]
+        put_series(h5, [row(*pair) for pair in pairs])
         for number, (_, slide) in enumerate(pairs):
             group = h5.create_group(f"speeds/{number:03d}")
             group.attrs["speed [mm/s]"] = slide.speed

@@ -54,18 +54,18 @@ class Locator:
         maps = _polynomials(nodes)
         element = self._first["nr"].astype(np.int64)
         place = np.stack([self._first["x"], self._first["y"]], axis=1)
-        todo = np.arange(len(points))
+        still = np.arange(len(points))
         for moves in range(MOST_MOVES + 1):
-            place[todo] = _inverted(maps[..., element[todo]], points[todo], place[todo])
-            beyond = _barycentric(place[todo])
-            beyond[self._neighbours[element[todo]] < 0] = 0.0
+            place[still] = _inverted(maps[..., element[still]], points[still], place[still])
+            beyond = _barycentric(place[still])
+            beyond[self._neighbours[element[still]] < 0] = 0.0
             side = beyond.argmin(axis=1)
-            leaves = beyond[np.arange(len(todo)), side] < -OUTSIDE
+            leaves = beyond[np.arange(len(still)), side] < -OUTSIDE
             if moves == MOST_MOVES or not leaves.any():  # a point outside may go to and fro between two elements
                 break
-            todo, side = todo[leaves], side[leaves]
-            element[todo] = self._neighbours[element[todo], side]
-            place[todo] = 1 / 3
+            still, side = still[leaves], side[leaves]
+            element[still] = self._neighbours[element[still], side]
+            place[still] = 1 / 3
         corners = _barycentric(place)
         self.inside = corners.min(axis=1) >= -OUTSIDE
         corners = np.maximum(corners, 0.0)
@@ -87,7 +87,7 @@ def _polynomials(nodes: Array) -> Array:
 
 def _inverted(maps: Array, points: Array, place: Array) -> Array:
     """Reference coordinates at which maps, shape (6, 2, n), take the points, shape (n, 2), by Newton's method."""
-    place, todo = place.copy(), np.arange(len(points))
+    place, still = place.copy(), np.arange(len(points))
     aim, (x, y) = points.T, place.T
     for _ in range(10):
         one, gx, gy, xx, xy, yy = maps
@@ -96,15 +96,15 @@ def _inverted(maps: Array, points: Array, place: Array) -> Array:
         det = along[0] * across[1] - along[1] * across[0]
         step = np.stack([off[0] * across[1] - off[1] * across[0], along[0] * off[1] - along[1] * off[0]]) / det
         found = np.clip(np.stack([x, y]) - step, -3.0, 4.0)  # far outside the map may fold
-        place[todo] = found.T
+        place[still] = found.T
         left = np.abs(step).max(axis=0) > 1e-10
         if not left.any():
             return place
-        todo, maps, aim, (x, y) = todo[left], maps[..., left], aim[:, left], found[:, left]
+        still, maps, aim, (x, y) = still[left], maps[..., left], aim[:, left], found[:, left]
     # Beyond the fold of a curved element there is no solution: the plane through its corners shows the way.
     corner, gx, gy, xx, _, yy = maps
     sides = np.stack([gx + xx, gy + yy], axis=1).T
-    place[todo] = np.linalg.solve(sides.transpose(0, 2, 1), (aim - corner).T[..., None])[..., 0]
+    place[still] = np.linalg.solve(sides.transpose(0, 2, 1), (aim - corner).T[..., None])[..., 0]
     return place
 
 

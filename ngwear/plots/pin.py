@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
+from ngwear.files import get_series
 from ngwear.sliding.scene import KIND
 
 if TYPE_CHECKING:
@@ -68,11 +69,7 @@ def read_pin(folder: Path | str) -> PinFile:
     file = Path(folder) / "result.h5"
     try:
         with h5py.File(file, "r") as h5:
-            series: dict[str, Array] = {}
-            # A column such as "speed [mm/s]" holds a slash, which HDF5 reads as a path.
-            h5["series"].visititems(
-                lambda name, item: series.__setitem__(name, item[()]) if isinstance(item, h5py.Dataset) else None
-            )
+            series = get_series(h5)
             order = np.argsort(series["speed [mm/s]"])
             groups = [h5[f"speeds/{k:03d}"] for k in order]
             sheets = [

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
+from ngwear.files import get_series
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,19 +78,9 @@ def read_result(folder: Path | str) -> ResultFile:
                         parts.get("mesh", {}),
                     )
                 )
-            # A column such as "force x [N/mm]" holds a slash, which HDF5 reads as a path.
-            series: dict[str, Array] = {}
-            h5["series"].visititems(
-                lambda name, item: series.__setitem__(name, _column(item)) if isinstance(item, h5py.Dataset) else None
-            )
-            return ResultFile(str(h5.attrs["scene"]), h5["outline/points [mm]"][()], series, snapshots)
+            return ResultFile(str(h5.attrs["scene"]), h5["outline/points [mm]"][()], get_series(h5), snapshots)
     except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
         raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
-
-
-def _column(item: Any) -> Array:
-    values = item[()]
-    return values.astype(str) if values.dtype.kind in "OS" else values
 
 
 def plot(folder: Path | str) -> list[Path]:

@@ -5,7 +5,8 @@ friction of 0.06 whatever the speed, the friction coefficient falls slightly, pe
 the penetration differs by 0.25 mm between the slowest and the fastest. Neither rubber nor temperature is given; those
 of geometries/pin_on_plate are chosen so that the loss factor is nearly flat over the speeds and the penetration
 differs by that much. With one arm a decade the loss factor still undulates by 10 % about its mean, and with it the
-friction: from one speed to the next it may rise by up to 2 %, which is less than it falls in all.
+friction: it falls by 6 % in all, but rises by about 1 % from one speed to the next at the slow end, and the check that
+it only falls stands as failed.
 
 The errors are the differences between the two meshes of each speed, whose elements and time steps (columns) differ by
 a factor 1.6, and between the friction from forces and from energy: the heat of the slip and that of the rubber.
@@ -49,15 +50,13 @@ def run() -> list[Check]:
         return Check(CASE, quantity, float(value), reference, tolerance, cpu, bound=bound)
 
     rise = np.diff(friction) / friction[1:]
-    slope = np.polyfit(np.log(series["speed [mm/s]"]), friction, 1)[0]
     return [
         check("speeds done [-]", summary["speeds done [-]"], 7, "above"),
         check("penetration, slowest less fastest [mm]", depth[0] - depth[-1], 0.25, "near", 0.1),
         check("largest rise of the penetration between speeds [mm]", np.diff(depth).max(), 0.0),
         check("largest rise of the contact area between speeds [mm²]", np.diff(area).max(), 0.0),
         check("friction, fastest over slowest [-]", friction[-1] / friction[0], 0.99),
-        check("largest rise of friction between speeds [-]", rise.max(), 0.02),
-        check("slope of friction over the logarithm of speed [-]", slope, 0.0),
+        check("largest rise of friction between speeds [-]", rise.max(), 0.0),
         check("fewest elements [-]", series["elements [-]"].min(), 3000, "above"),
         check("friction, between two meshes [-]", errors["friction, between two meshes [-]"], 0.03),
         check("penetration, between two meshes [-]", errors["penetration, between two meshes [-]"], 0.03),
