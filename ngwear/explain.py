@@ -88,11 +88,6 @@ def _arms(scene: Scene) -> dict[str, str]:
     folding = scene.folding
     told = {}
     for time, ratio in zip(scene.prony.times, scene.prony.ratios, strict=True):
-        fate = "kept"
-        if time in folding.fast:
-            fate = "folded to nothing: it has always relaxed"
-        elif time in folding.slow:
-            fate = "folded into the elastic part: it never relaxes"
         deborah = {f"{time / stroke.duration:.3g}": None for stroke in scene.program.cycle}
-        told[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {fate}"
+        told[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {folding.fate(time)}"
     return told

@@ -9,6 +9,7 @@ from ngwear.errors import SceneError
 from ngwear.input.tables import get, known, record, typed
 from ngwear.materials import WLF, Arrhenius, Hyperelastic, MooneyRivlin, NeoHooke, PronySeries
 from ngwear.materials.library import relaxation_of
+from ngwear.materials.smoothing import smooth
 
 _MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
     "neo-hooke": NeoHooke,
@@ -28,17 +29,21 @@ def read_material(table: dict[str, Any]) -> Hyperelastic:
 
 
 def read_arms(table: dict[str, Any]) -> PronySeries:
-    """Arms at the scene's temperature: a compound's from the library, or moduli and times."""
+    """Arms at the scene's temperature: a compound's from the library, or moduli and times; smoothed if asked for."""
     place = "material.prony"
     if not isinstance(table, dict):
         raise SceneError(place, table, "must be a table [material.prony]")
     table = {key: value for key, value in table.items() if key != "source"}
     shift = None
+    common = {"temperature", "shift", "smoothing"}
     if "compound" in table:
-        known(f"{place}.", table, {"compound", "temperature", "shift"})
+        known(f"{place}.", table, {"compound", *common})
         series, shift = relaxation_of(typed(f"{place}.compound", table["compound"], "str"))
     else:
+        known(f"{place}.", table, {"moduli", "times", "reference", "long_term", *common})
         series = _listed_arms(table, place)
+    if "smoothing" in table:
+        series = smooth(series, misfit=typed(f"{place}.smoothing", table["smoothing"], "float"))
     if "shift" in table:
         shift = _shift(table["shift"], f"{place}.shift")
         get(table, place, "temperature")
@@ -54,7 +59,6 @@ def read_arms(table: dict[str, Any]) -> PronySeries:
 
 
 def _listed_arms(table: dict[str, Any], place: str) -> PronySeries:
-    known(f"{place}.", table, {"compound", "moduli", "times", "reference", "long_term", "temperature", "shift"})
     moduli, times = (_numbers(f"{place}.{key}", get(table, place, key)) for key in ("moduli", "times"))
     reference = get(table, place, "reference")
     if reference not in _REFERENCES:

@@ -186,3 +186,9 @@ class Folding:
     fast: tuple[float, ...]
     slow: tuple[float, ...]
     bound: float
+
+    def fate(self, time: float) -> str:
+        """What became of the arm of a relaxation time [s], in words."""
+        if time in self.fast:
+            return "folded to nothing: it has always relaxed"
+        return "folded into the elastic part: it never relaxes" if time in self.slow else "kept"

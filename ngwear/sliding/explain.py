@@ -17,9 +17,11 @@ def explain_pin(scene: PinScene) -> dict[str, Any]:
     problem, material, series = stage.problem, pin.material, pin.series
     rates = [speed / pin.contact_radius for speed in (min(scene.speeds), max(scene.speeds))]
     slow, fast = (rate / (2 * math.pi) for rate in rates)
+    foldings = [scene.mesh.folding(series, speed) for speed in (min(scene.speeds), max(scene.speeds))]
+    kept = "{} to {}".format(*sorted(len(folding.kept.times) for folding in foldings))
     effects = {
         "hyperelasticity": type(material).__name__,
-        "memory": f"{len(series.times)} arms in the steady state of a pin that has been running for ever",
+        "memory": f"{kept} of {len(series.times)} arms in the steady state of a pin that has been running for ever",
         "contact": f"ball of {pin.radius:g} mm under {pin.load:g} N",
     }
     if pin.friction > 0:
@@ -38,9 +40,15 @@ def explain_pin(scene: PinScene) -> dict[str, Any]:
             "contact radius, a guess, over thickness [-]": pin.contact_radius / pin.thickness,
             "loss factor at the slowest and the fastest [-]": [float(series.tan_delta(f)) for f in (slow, fast)],
             "shortest time of a turn [s]": turn / max(scene.speeds),
+            "largest error of stress by folding [-]": max(folding.bound for folding in foldings),
         },
         "arms of the memory": {
-            f"{time:.4g} s": f"G/G_inf = {ratio:.4g}, tau V/a = {time * rates[0]:.3g} to {time * rates[1]:.3g}"
+            f"{time:.4g} s": f"G/G_inf = {ratio:.4g}, tau V/a = {time * rates[0]:.3g} to {time * rates[1]:.3g}: "
+            f"{_fates(*(folding.fate(time) for folding in foldings))}"
             for time, ratio in zip(series.times, series.ratios, strict=True)
         },
     }
+
+
+def _fates(slow: str, fast: str) -> str:
+    return slow if slow == fast else f"at the lowest speed {slow}; at the highest {fast}"

@@ -213,6 +213,7 @@ def slide_pin(
     if pin.series is None:
         raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
     mesh, options = mesh or PinMesh(), options or SteadyOptions(tolerance=ROUGH)
+    pin = replace(pin, series=mesh.folding(pin.series, speed).kept)
     clock = time.process_time()
     coarse = PinStage(pin, coarsened(mesh), (0.0, 0.0, pin.contact_radius))
     work = coarse.press()

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from ngwear.errors import SceneError
-from ngwear.materials import Hyperelastic, PronySeries
+from ngwear.materials import Folding, Hyperelastic, PronySeries
 
 KIND = "pin on plate"
 
@@ -76,7 +76,8 @@ class Pin:
 class PinMesh:
     """How fine: edges in the contact, far away [mm], and the grid's columns in the contact [mm].
 
-    ``reach`` and ``beside`` are how far the block reaches along the track and across it, over the sheet's thickness.
+    ``folding_error`` is the largest relative error of stress by arms that are folded away, ``reach`` and ``beside`` are
+    how far the block reaches along the track and across it, over the sheet's thickness.
 
     Raises
     ------
@@ -89,6 +90,7 @@ class PinMesh:
     column: float = 0.2
     reach: float = 5.0
     beside: float = 3.5
+    folding_error: float = 1e-3
 
     def __post_init__(self) -> None:
         for name in ("patch", "coarse", "column", "reach", "beside"):
@@ -96,6 +98,15 @@ class PinMesh:
                 raise SceneError(f"accuracy.{name}", getattr(self, name), "must be finite and greater than 0")
         if self.coarse < self.patch:
             raise SceneError("accuracy.coarse", self.coarse, "must be at least the patch size")
+        if not 0 <= self.folding_error < 1:
+            raise SceneError("accuracy.folding_error", self.folding_error, "must be at least 0, below 1")
+
+    def folding(self, series: PronySeries, speed: float) -> Folding:
+        """Fold the arms that relax while the rubber passes one column.
+
+        None becomes a spring: the pin has been running for ever, and the slowest arm has seen the mean of every turn.
+        """
+        return series.folded(shortest=self.column / speed, longest=math.inf, tolerance=self.folding_error)
 
 
 @dataclass(frozen=True, kw_only=True)

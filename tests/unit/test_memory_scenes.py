@@ -73,6 +73,11 @@ def test_compound_of_the_library(read_arms, compound):
     assert cold.prony.times[0] > 2 * scene.prony.times[0]
 
 
+def test_smoothed_arms_are_three_a_decade(read_arms):
+    scene = read_arms('\n[material.prony]\ncompound = "NBR"\nsmoothing = 0.05\n')
+    assert len(scene.prony.times) == 27
+
+
 BAD = {
     "negative modulus": ([("0.4", "-0.4")], "material.prony.moduli[1]", -0.4, "greater than 0"),
     "modulus nan": ([("0.4", "nan")], "material.prony.moduli[1]", None, "finite"),
@@ -109,6 +114,7 @@ BAD = {
     "law": ([('"wlf"', '"vft"')], "material.prony.shift.law", "vft", "wlf.*arrhenius"),
     "law's key": ([("c2", "c3")], "material.prony.shift.c3", 51.6, "unknown key.*'c2'"),
     "law's value": ([("17.44", "-17.44")], "material.shift.c1", -17.44, "greater than 0"),
+    "smoothing": ([(WARMER, WARMER + "smoothing = 0.9\n")], "material.prony.smoothing", 0.9, "must lie between"),
     "hot as absolute zero": (
         [(SHIFT, 'shift = { law = "arrhenius", activation_energy = 5e4, reference = 296 }'), ("303.15", "0")],
         "material.prony.temperature",

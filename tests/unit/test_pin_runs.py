@@ -3,13 +3,16 @@
 import csv
 import io
 import json
+from dataclasses import replace
 
 import h5py
 import pytest
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.errors import SceneError
+from ngwear.materials import PronySeries
 from ngwear.scenefile import read_scene
+from ngwear.sliding.pin import slide_pin
 
 SCENE = """
 [scene]
@@ -107,6 +110,27 @@ def test_explain_tells_the_arms(tmp_path, capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["kind"] == "pin on plate"
     assert list(found["arms of the memory"]) == ["0.001 s"]
+
+
+def test_arms_that_relax_within_a_column_are_folded_and_told(tmp_path, capsys):
+    two = SCENE.replace("times = [1e-3]", "times = [1e-8, 1e-3]").replace("moduli = [1.0]", "moduli = [1.0, 1.0]")
+    assert two != SCENE
+    assert main(["explain", write(tmp_path, two), "--json"]) == OK
+    found = json.loads(capsys.readouterr().out)
+    assert "1 to 1 of 2 arms" in found["effects"]["memory"]
+    assert "folded to nothing" in found["arms of the memory"]["1e-08 s"]
+    assert found["arms of the memory"]["0.001 s"].endswith(": kept")
+    assert 0 < found["numbers"]["largest error of stress by folding [-]"] <= 1e-3
+
+
+def test_folding_changes_friction_by_no_more_than_its_bound(tmp_path):
+    scene = read_scene(write(tmp_path))
+    two = replace(scene.pin, series=PronySeries((1.0, 1.0), (2e-7, 1e-3)))
+    folded, whole = (
+        slide_pin(two, 3000.0, mesh=replace(scene.mesh, folding_error=error))[1].friction for error in (2e-2, 0.0)
+    )
+    assert folded == pytest.approx(whole, rel=2e-2)
+    assert folded != whole
 
 
 @pytest.mark.parametrize(

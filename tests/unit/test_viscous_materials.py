@@ -8,6 +8,7 @@ from ngwear.materials import WLF, Arrhenius, PronySeries
 from ngwear.materials.calibrate import PoorFitWarning, fit_dma, fit_relaxation, fit_tension, fit_wlf
 from ngwear.materials.library import GLASS, compound, filled_rubber, young_from_hardness
 from ngwear.materials.measurements import Dma, Relaxation, Tension, read_dma, read_relaxation, read_tension
+from ngwear.materials.smoothing import smooth
 from ngwear.plots.fits import draw_prony, draw_shift, draw_tension
 
 ARMS = PronySeries((2.0, 1.0, 0.5), (1e-3, 1e-2, 1e-1))
@@ -57,6 +58,33 @@ def test_folding_keeps_what_matters_and_bounds_what_it_drops():
     assert np.abs(fold.stiffening * fold.kept.relaxation(t) / series.relaxation(t) - 1).max() <= fold.bound
     f = np.geomspace(1 / 200 / np.pi, 1 / (2 * np.pi * 0.01), 50)
     assert np.abs(fold.stiffening * fold.kept.loss(f) - series.loss(f)).max() <= 2 * fold.bound * 2
+
+
+def test_smoothed_spectrum_stays_as_near_as_asked_and_undulates_less():
+    series = filled_rubber().prony
+    smoothed = smooth(series, misfit=0.05)
+    f = np.geomspace(1 / (2 * np.pi * series.times[-1]), 1 / (2 * np.pi * series.times[0]), 500)
+    misses = [smoothed.storage(f) / series.storage(f) - 1, smoothed.loss(f) / series.loss(f) - 1]
+    assert np.sqrt(np.mean(np.square(misses))) == pytest.approx(0.05, rel=0.01)
+
+    def wiggles(s):
+        return np.count_nonzero(np.diff(np.sign(np.diff(s.tan_delta(f)))))
+
+    assert wiggles(smoothed) <= 4 < wiggles(series)
+
+
+@pytest.mark.parametrize(
+    ("series", "misfit", "says"),
+    [
+        (PronySeries((1.0, 1.0), (1.0, 10.0)), 0.05, "at least three arms"),
+        (PronySeries((1.0,) * 3, (1e-9, 1.0, 1e9)), 0.05, "more than 40 arms"),
+        (ARMS, 0.9, "must lie between"),
+        (ARMS, -0.1, "must lie between"),
+    ],
+)
+def test_smoothing_that_cannot_be_is_refused(series, misfit, says):
+    with pytest.raises(SceneError, match=says):
+        smooth(series, misfit=misfit)
 
 
 @pytest.mark.parametrize(
