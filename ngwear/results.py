@@ -18,7 +18,7 @@ from ngwear.errors import ResultError
 from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, put_series
 from ngwear.geometry.contour import Contour
 from ngwear.scene import Scene
-from ngwear.units import UNITS, force_unit
+from ngwear.units import UNITS, energy_unit, force_unit
 
 Array = NDArray[np.float64]
 
@@ -97,6 +97,9 @@ class Recorder:
             row[f"{contact} contact zones [-]"] = len(zones)
         for name, force in report.forces.items():
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
+        for name, drag in report.drags.items():
+            heat = drag * cycle[report.phase].travel
+            row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
         row |= {
             "leaks [-]": int(report.leaks),
             "Newton iterations [-]": report.iterations,

@@ -114,6 +114,8 @@ class StrokeReport:
         The followed contacts at equilibrium.
     forces : dict of str to array, shape (2,)
         Resultants on the part [N, or N/mm].
+    drags : dict of str to float
+        Friction's heat over the way slid, of each contact that has friction [N, or N/mm].
     leaks : bool
         Whether the fluid meets no contact.
     contour : Contour
@@ -128,6 +130,7 @@ class StrokeReport:
     iterations: int
     contacts: dict[str, ContactProfile]
     forces: dict[str, Array]
+    drags: dict[str, float]
     leaks: bool
     contour: Contour
     ledger: Ledger

@@ -298,6 +298,7 @@ class Stepper:
             iterations=iterations,
             contacts={spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed},
             forces=stage.forces(),
+            drags={name: friction.drag() for name, friction in stage.frictions.items()},
             leaks=stage.fluid is not None and stage.fluid.leaks,
             contour=state.contour,
             ledger=replace(state.ledger),

@@ -20,3 +20,8 @@ UNITS = {
 def force_unit(axisymmetric: bool) -> str:
     """Return the unit of a resultant force: ``N``, or ``N/mm`` of thickness in plane strain."""
     return "N" if axisymmetric else "N/mm"
+
+
+def energy_unit(axisymmetric: bool) -> str:
+    """Return the unit of an energy: ``mJ``, or ``mJ/mm`` of thickness in plane strain."""
+    return "mJ" if axisymmetric else "mJ/mm"

@@ -51,9 +51,16 @@ class FullSliding(Term):
 
     def force(self) -> np.ndarray:
         """Resultant of the friction on the part; [N], or N/mm in plane strain."""
+        tangent = self.contact.surface.tangent(*self.contact.place(self._unknowns.state))
+        return np.array([self._integral(self.slip.Get() * t) for t in tangent])
+
+    def drag(self) -> float:
+        """``int mu P dA``: heat of the friction over the way that the surface slides; [N], or N/mm in plane strain."""
+        return self._integral(1.0)
+
+    def _integral(self, factor: ng.CoefficientFunction | float) -> float:
+        """Of the traction ``mu P`` times a factor."""
         known, contact = self._unknowns, self.contact
-        p = known.state[contact.pressure_name]
-        scale = self.coefficient * self.slip.Get() * p * known.kinematics.weight
+        traction = self.coefficient * known.state[contact.pressure_name] * known.kinematics.weight
         measure = ng.ds(definedon=known.body.boundary(contact.edges), bonus_intorder=2)
-        tangent = contact.surface.tangent(*contact.place(known.state))
-        return np.array([ng.Integrate(scale * t * measure, known.body.mesh) for t in tangent])
+        return float(ng.Integrate(factor * traction * measure, known.body.mesh))

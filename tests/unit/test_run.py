@@ -123,6 +123,8 @@ def test_force_and_friction_obey_coulomb(finished):
         assert normal == pytest.approx(-0.5, rel=0.03)
         assert float(row["roller force y [N/mm]"]) == pytest.approx(-0.5, rel=1e-6), "however worn the outline is"
         assert abs(along) == pytest.approx(0.1 * 0.5, rel=0.05)
+        heat = float(row["roller friction heat of the stroke [mJ/mm]"])
+        assert heat == pytest.approx(0.1 * 0.5 * 10.0, rel=0.05), "mu F over 10 mm"
 
 
 def test_wearless_run_wears_nothing(tmp_path, write_sheet):
