@@ -12,6 +12,8 @@ from ngwear.geometry.meshed import Meshed
 
 RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
 
+NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
+
 
 class StickSlip(Term):
     """Coulomb's law over one step, from the state of the last accepted one; the nominal traction T is an unknown.
@@ -63,10 +65,10 @@ class StickSlip(Term):
         self._before = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         give = contact.lengths(body) / contact.modulus
         tangents = contact.surface.tangents(*contact.place(unknowns.trial))
-        p = unknowns.trial[contact.pressure_name]
-        bearing = ng.IfPos(contact.pushed(unknowns.trial), ng.IfPos(p, p, 0.0), 0.0)
         tractions = [unknowns.trial[name] for name in self.tractions]
-        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=self.coefficient * bearing, give=give)
+        p = unknowns.trial[contact.pressure_name] - NOTHING * contact.modulus
+        bound = self.coefficient * ng.IfPos(p, p, 0.0)
+        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give)
         work = sum(
             a * sum(t[i] * unknowns.v[i] for i in range(len(t))) for a, t in zip(tractions, tangents, strict=True)
         )
