@@ -37,7 +37,7 @@ class ResultFile:
     edges : tuple of str, length n
         Name of each of its segments.
     wear_rates : dict
-        Specific wear rate k of each contact that wears [mm²/N].
+        Specific wear rate k of each contact that wears [mm²/N]; empty in files of before it was kept.
     worn_edges : tuple of str
     remembers : bool
         Whether the rubber has memory.
@@ -94,7 +94,7 @@ def read_result(folder: Path | str) -> ResultFile:
                     )
                 )
             rate = "specific wear rate [mm^2/N]"
-            worn = {name: group.attrs for name, group in h5["contacts"].items() if group.attrs[rate] > 0}
+            worn = {name: group.attrs for name, group in h5.get("contacts", {}).items() if group.attrs[rate] > 0}
             return ResultFile(
                 scene=str(h5.attrs["scene"]),
                 outline=h5["outline/points [mm]"][()],
@@ -103,7 +103,7 @@ def read_result(folder: Path | str) -> ResultFile:
                 worn_edges=tuple(
                     dict.fromkeys(str(edge) for attributes in worn.values() for edge in attributes["edges"])
                 ),
-                remembers=bool(h5.attrs["memory"]),
+                remembers=bool(h5.attrs.get("memory", False)),
                 series=get_series(h5),
                 snapshots=snapshots,
             )

@@ -80,5 +80,6 @@ def measured_figure(comparison: Comparison) -> Figure:
     deviation.axhline(0, color="k", lw=0.8)
     deviation.set_ylabel("height, measured less simulated [µm]")
     deviation.set_xlabel(f"{axis} [mm]")
-    deviation.legend()
+    deviation.margins(y=0.3)
+    deviation.legend(loc="upper center", ncols=2)
     return figure

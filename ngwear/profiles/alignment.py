@@ -10,13 +10,14 @@ from scipy.optimize import least_squares
 from scipy.signal import correlate
 
 from ngwear.errors import SceneError
-from ngwear.profiles.measured import Profile
+from ngwear.profiles.measured import FEWEST, Profile
 from ngwear.profiles.worn_edge import FAR, WornEdge
 
 Array = NDArray[np.float64]
 STEEPEST = np.radians(15.0)
 OVERLAP = 0.6  # of the shorter of profile and edge
 SHIFTS, TRIED, THINNED = 400, (0.0, 0.05, 0.15, 0.4, 0.7, 1.0, 2.0), 400
+NEAR = 0.1  # of the edge's length: how far the shift may move from the best one tried
 AS_GOOD = 1.2  # times the least mean square: among such shifts the smallest is taken
 ROUNDS = 4  # which points lie on the edge, and how large the noise is, are found again in each
 NO_NOISE = 1e-7  # mm
@@ -93,7 +94,7 @@ def align(profile: Profile, edge: WornEdge) -> Alignment:
     SceneError
         If no shift lays the profile over the edge.
     """
-    start = _coarse(profile, edge)
+    p, span = _coarse(profile, edge)
     centre = (float(profile.x.mean()), float(profile.z.mean()))
 
     def placed(p: Array) -> tuple[Array, Array]:
@@ -103,13 +104,15 @@ def align(profile: Profile, edge: WornEdge) -> Alignment:
         place, height = placed(p)
         return height[on] - np.interp(place[on], edge.place, edge.at(p[3] * edge.end))
 
-    low = [-np.inf, -np.inf, -STEEPEST, 0.0]
-    high = [np.inf, np.inf, STEEPEST, FAR]
+    near = NEAR * edge.length
+    low = [max(span[0], p[0] - near), -np.inf, -STEEPEST, 0.0]
+    high = [min(span[1], p[0] + near), np.inf, STEEPEST, FAR]
     scale = [0.01 * profile.length, max(float(np.ptp(profile.z)), 1e-6), 0.01, 0.1]
-    p = start
+    on = np.ones(len(profile.x), dtype=bool)
     for _ in range(ROUNDS):
-        place, _z = placed(p)
-        on = (place >= edge.place[0]) & (place <= edge.place[-1])
+        place, _height = placed(p)
+        over = (place >= edge.place[0]) & (place <= edge.place[-1])
+        on = over if over.sum() >= FEWEST else on
         left = residuals(p, on)
         noise = max(1.4826 * float(np.median(np.abs(left - np.median(left)))), NO_NOISE)
         found = least_squares(
@@ -117,32 +120,32 @@ def align(profile: Profile, edge: WornEdge) -> Alignment:
         )
         p = found.x
     place, height = placed(p)
-    on &= (place >= edge.place[0]) & (place <= edge.place[-1])
     left = residuals(p, on)
     line = np.polynomial.Polynomial.fit(place[on], height[on], 1)
     spread = float(np.sqrt(np.mean((height[on] - line(place[on])) ** 2)))
+    order = np.argsort(place[on])
     return Alignment(
         placement=Placement(float(p[0]), float(p[1]), float(p[2]), centre),
-        place=place[on],
-        height=height[on],
+        place=place[on][order],
+        height=height[on][order],
         distance=float(p[3]) * edge.end,
         error=_error(found.jac, left) * edge.end,
         misfit=float(np.sqrt(np.mean(left**2))) / max(spread, NO_NOISE),
     )
 
 
-def _coarse(profile: Profile, edge: WornEdge) -> Array:
-    """Shift, height, tilt and share of the run's distance to start from, by linear fits at many shifts."""
+def _coarse(profile: Profile, edge: WornEdge) -> tuple[Array, tuple[float, float]]:
+    """Shift, height, tilt and share of the run's distance to start from, by linear fits at many shifts; their span."""
     pick = np.unique(np.linspace(0, len(profile.x) - 1, THINNED).round().astype(int))
     x, z = profile.x[pick], profile.z[pick]
     offset = x - profile.x.mean()
     reach = OVERLAP * min(profile.length, edge.length)
-    span = edge.place[0] - x[-1] + reach, edge.place[-1] - x[0] - reach
+    span = float(edge.place[0] - x[-1] + reach), float(edge.place[-1] - x[0] - reach)
     outlines = np.array([edge.at(share * edge.end) for share in TRIED])
     found = []
     for shift in np.linspace(*span, SHIFTS):
         on = (x + shift >= edge.place[0]) & (x + shift <= edge.place[-1])
-        if on.sum() < 10:
+        if on.sum() < FEWEST:
             continue
         where = np.clip(np.searchsorted(edge.place, x[on] + shift), 0, len(edge.place) - 1)
         goal = (outlines[:, where] - z[on]).T
@@ -160,7 +163,7 @@ def _coarse(profile: Profile, edge: WornEdge) -> Array:
     table = np.array(found)
     good = table[table[:, 0] <= AS_GOOD * table[:, 0].min()]
     _, shift, up, slope, share = good[np.argmin(np.abs(good[:, 1]))]
-    return np.array([shift, up, np.arctan(slope), share])
+    return np.array([shift, up, np.arctan(slope), share]), span
 
 
 def _error(jacobian: Array, left: Array) -> float:

@@ -70,7 +70,7 @@ class Comparison:
         return np.interp(self.alignment.place, self.edge.place, self.edge.heights[0]) - self.alignment.height
 
     def area(self, depth: Array) -> float:
-        """``int depth dx`` over the profile's points by trapezoids, signed [mm²]."""
+        """``int depth dx`` over the profile's points by trapezoids, signed; every point counts, dust too [mm²]."""
         return float(trapezoid(depth, self.alignment.place))
 
     def as_dict(self) -> dict[str, Any]:

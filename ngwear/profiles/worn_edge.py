@@ -103,7 +103,7 @@ def read_worn_edge(folder: Path | str, *, edges: Sequence[str] = ()) -> WornEdge
     """
     result = read_result(folder)
     if not result.wear_rates or not result.snapshots or result.snapshots[-1].stroke == 0:
-        raise ResultError(f"{folder}: nothing has worn in this run; a profile needs worn outlines to compare with")
+        raise ResultError(f"{folder}: nothing has worn in this run, or its wear rates were not kept: run it again")
     on = _on(result, edges or result.worn_edges)
     direction, outward, axis = _view(result.outline, on)
     ends = np.concatenate([result.outline[on], np.roll(result.outline, -1, axis=0)[on]]) @ direction
