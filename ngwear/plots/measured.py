@@ -41,42 +41,37 @@ def measured_figure(comparison: Comparison) -> Figure:
     from matplotlib.figure import Figure
 
     edge, found = comparison.edge, comparison.alignment
-    best = min(found.distance, edge.end)
     place, axis = found.place, edge.axis if edge.axis not in "xy" else f"{edge.axis} on the unloaded outline"
-    blue, red, green = COLOURS[:3]
+    measured, now = comparison.measured_depth, edge.strokes_at(comparison.compared)
+    curves = [("simulated", comparison.depth(comparison.compared), COLOURS[0], "-")]
+    if not comparison.beyond:
+        name = f"best fit, {edge.strokes_at(found.distance):.4g} strokes"
+        curves.append((name, comparison.depth(found.distance), COLOURS[2], "--"))
     figure = Figure(figsize=(10, 10), layout="constrained")
     FigureCanvasAgg(figure)
     outline, depth, deviation = figure.subplots(3, 1, sharex=True, height_ratios=(1, 1.2, 1))
+
     near = (edge.place >= place[0]) & (edge.place <= place[-1])
     outline.plot(edge.place[near], edge.heights[0, near], "--", color="0.5", lw=1.2, label="unworn")
-    outline.plot(place, found.height, ".", color=red, ms=2.5, label="measured, aligned")
-    outline.plot(edge.place[near], edge.at(comparison.compared)[near], color=blue, lw=1.2, label="simulated")
+    outline.plot(place, found.height, ".", color=COLOURS[1], ms=2.5, label="measured, aligned")
+    outline.plot(edge.place[near], edge.at(comparison.compared)[near], color=COLOURS[0], lw=1.2, label="simulated")
     outline.set_ylabel("height out of the material [mm]")
-    outline.set_title(
-        f"{edge.scene}: measured profile and outline after {edge.strokes_at(comparison.compared):.4g} strokes"
-    )
+    outline.set_title(f"{edge.scene}: measured profile and outline after {now:.4g} strokes")
     outline.legend()
 
-    measured = comparison.measured_depth
-    simulated, fitted = comparison.depth(comparison.compared), comparison.depth(best)
-
-    def area(values: np.ndarray) -> str:
-        return f"{comparison.area(values):.4g} mm²"
-
-    depth.plot(place, 1e3 * measured, ".", color=red, ms=2.5, label=f"measured: {area(measured)}")
-    depth.plot(place, 1e3 * simulated, color=blue, lw=1.4, label=f"simulated: {area(simulated)}")
-    strokes = edge.strokes_at(best)
-    label = "run's end" if comparison.beyond else "best fit"
-    depth.plot(place, 1e3 * fitted, "--", color=green, lw=1.4, label=f"{label}, {strokes:.4g} strokes: {area(fitted)}")
-    depth.fill_between(place, 0, 1e3 * simulated, color=blue, alpha=0.12, lw=0)
+    area = comparison.area(measured)
+    depth.plot(place, 1e3 * measured, ".", color=COLOURS[1], ms=2.5, label=f"measured: {area:.4g} mm²")
+    for name, values, colour, style in curves:
+        label = f"{name}: {comparison.area(values):.4g} mm²"
+        depth.plot(place, 1e3 * values, style, color=colour, lw=1.4, label=label)
+        off = 1e3 * (values - measured)
+        label = f"{name}: RMS {np.sqrt(np.mean(off**2)):.3g} µm, largest {np.abs(off).max():.3g} µm"
+        deviation.plot(place, off, ".", color=colour, ms=2.5, label=label)
+    depth.fill_between(place, 0, 1e3 * curves[0][1], color=COLOURS[0], alpha=0.12, lw=0)
     depth.invert_yaxis()
     depth.set_ylabel("worn depth [µm]")
     depth.legend(title="worn area")
 
-    for values, colour, name in ((simulated, blue, "simulated"), (fitted, green, label)):
-        off = 1e3 * (values - measured)
-        rms, worst = np.sqrt(np.mean(off**2)), np.abs(off).max()
-        deviation.plot(place, off, ".", color=colour, ms=2.5, label=f"{name}: RMS {rms:.3g} µm, largest {worst:.3g} µm")
     deviation.axhline(0, color="k", lw=0.8)
     deviation.set_ylabel("height, measured less simulated [µm]")
     deviation.set_xlabel(f"{axis} [mm]")

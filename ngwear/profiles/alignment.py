@@ -21,6 +21,7 @@ NEAR = 0.1  # of the edge's length: how far the shift may move from the best one
 AS_GOOD = 1.2  # times the least mean square: among such shifts the smallest is taken
 ROUNDS = 4  # which points lie on the edge, and how large the noise is, are found again in each
 NO_NOISE = 1e-7  # mm
+OUTLIER = 8.0  # times the noise
 
 
 @dataclass(frozen=True)
@@ -64,6 +65,8 @@ class Alignment:
         Standard error of the distance [mm].
     misfit : float
         Root mean square of what is left, over that of the profile about its own straight line [-].
+    outliers : int
+        Points left further from the outline than eight times the noise.
     """
 
     placement: Placement
@@ -72,6 +75,7 @@ class Alignment:
     distance: float
     error: float
     misfit: float
+    outliers: int
 
 
 def align(profile: Profile, edge: WornEdge) -> Alignment:
@@ -131,6 +135,7 @@ def align(profile: Profile, edge: WornEdge) -> Alignment:
         distance=float(p[3]) * edge.end,
         error=_error(found.jac, left) * edge.end,
         misfit=float(np.sqrt(np.mean(left**2))) / max(spread, NO_NOISE),
+        outliers=int((np.abs(left) > OUTLIER * noise).sum()),
     )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
 from ngwear.errors import ResultError, SceneError
-from ngwear.profiles.alignment import STEEPEST, Alignment, align
+from ngwear.profiles.alignment import OUTLIER, STEEPEST, Alignment, align
 from ngwear.profiles.measured import WRONG_UNIT, Profile, guess_unit, read_profile
 from ngwear.profiles.worn_edge import WornEdge, read_worn_edge
 
@@ -74,7 +74,7 @@ class Comparison:
         return float(trapezoid(depth, self.alignment.place))
 
     def as_dict(self) -> dict[str, Any]:
-        """All numbers, as in ``measured.json``."""
+        """All numbers, as in ``measured.json``; a best fit beyond the run's end rests on a guess, and gives no rate."""
         edge, found = self.edge, self.alignment
         place, motion = found.place, found.placement
         out: dict[str, Any] = {
@@ -237,6 +237,11 @@ def _notes(profile: Profile, edge: WornEdge, found: Alignment, slid: float) -> l
         notes.append(
             f"the misfit is {found.misfit:.0%} of the heights' spread: profile and outline hardly resemble each other, "
             "or there is more noise than wear"
+        )
+    if found.outliers:
+        notes.append(
+            f"{found.outliers} points stand out from the best fit by more than {OUTLIER:.0f} times the noise: dust? They "
+            "weigh little in the fit, but count in the measured area and in the deviations"
         )
     if slid > edge.end:
         notes.append(f"the part has slid {slid:.6g} mm, the run {edge.end:.6g}: compared with the run's end")

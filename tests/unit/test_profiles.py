@@ -95,6 +95,9 @@ def test_dust_pulls_little(compare):
     z[::40] += 0.03
     found = compare(Profile(profile.x, z), distance=50.0)
     assert found.factor == pytest.approx(1.3, rel=0.05)
+    assert [note.split(":")[0] for note in found.notes] == [
+        "38 points stand out from the best fit by more than 8 times the noise"
+    ]
 
 
 @pytest.mark.parametrize(
