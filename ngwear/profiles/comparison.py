@@ -240,8 +240,8 @@ def _notes(profile: Profile, edge: WornEdge, found: Alignment, slid: float) -> l
         )
     if found.outliers:
         notes.append(
-            f"{found.outliers} points stand out from the best fit by more than {OUTLIER:.0f} times the noise: dust? They "
-            "weigh little in the fit, but count in the measured area and in the deviations"
+            f"{found.outliers} points stand out from the best fit by more than {OUTLIER:.0f} times the noise: dust? "
+            "They weigh little in the fit, but count in the measured area and in the deviations"
         )
     if slid > edge.end:
         notes.append(f"the part has slid {slid:.6g} mm, the run {edge.end:.6g}: compared with the run's end")
