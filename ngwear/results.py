@@ -247,6 +247,11 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         outline["points [mm]"] = scene.contour.points
         outline["edges"] = np.array(scene.contour.names, dtype=h5py.string_dtype())
         outline.attrs["provenance"] = scene.contour.provenance
+        h5.attrs["memory"] = scene.arms is not None
+        contacts = h5.create_group("contacts")
+        for spec in scene.contacts:
+            group = contacts.create_group(spec.name)
+            group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, spec.specific_wear_rate
         put_series(h5, recorder.rows)
         strokes = h5.create_group("strokes")
         for number, snapshot in enumerate(recorder.snapshots):
