@@ -29,6 +29,7 @@ from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Soli
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.sheet import Sheet
+from ngwear.laws import ByPressure
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
 from ngwear.surfaces import Cylinder, Plane, RigidSurface, Sphere
 from ngwear.verify.base import Check, Stopwatch
@@ -42,6 +43,7 @@ MATERIALS = {
     "Mooney-Rivlin": MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
 }
 ARMS = PronySeries((3.0, 2.0), (0.1, 1.0))
+BY_PRESSURE = ByPressure(light=0.9, limit=0.1, pressure=0.8, exponent=0.7)
 SECTION = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
 SOLID = {"solid": Solid()}
 KINEMATICS = SECTION | SOLID
@@ -129,6 +131,12 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
                 f"full sliding, {name}, {how}, {kin}",
                 kinematics,
                 [_UnknownsOf(contact), FullSliding(contact, 0.8)],
+            )
+            contact = _contact(surface, forced, 0.0)
+            yield (
+                f"full sliding by pressure, {name}, {how}, {kin}",
+                kinematics,
+                [_UnknownsOf(contact), FullSliding(contact, BY_PRESSURE)],
             )
     for kin, kinematics in SECTION.items():
         fluid = FluidPressure(("right", "top"), ("right",), ())
