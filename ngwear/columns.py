@@ -25,8 +25,11 @@ def read_columns(path: Path | str, needed: Sequence[str], one_of: Sequence[str] 
     path = Path(path)
     if not path.is_file():
         raise SceneError("file", str(path), "there is no such file")
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise SceneError("file", str(path), f"cannot be read as a table of text: {error}") from None
     columns = {(name or "").strip() for name in rows[0]} if rows else set()
     missing = [name for name in needed if name not in columns]
     if one_of and not columns & set(one_of):
