@@ -30,6 +30,7 @@ CASES: dict[str, str] = {
     "block_on_ring": "ngwear.verify.block_on_ring",
     "worn_cylinder": "ngwear.verify.worn_cylinder",
     "stability_pair": "ngwear.verify.stability_pair",
+    "lubrication": "ngwear.verify.lubrication",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
     "rod_seal_filled": "ngwear.verify.rod_seal_filled",
