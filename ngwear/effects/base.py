@@ -55,10 +55,12 @@ class Term(abc.ABC):
 
     Residuals and tangents are pure functions of the unknowns and of parameters that change between
     solves only. ``loads`` maps names such as ``"rod approach [mm]"`` to those parameters that a program
-    of loads may set.
+    of loads may set, ``tractions`` names the unknowns that a solve must have settled.
     """
 
     symmetric: bool = True
+    remembers: bool = False  # whether every step of a walk must be as exact as its last
+    tractions: tuple[str, ...] = ()
 
     def __init__(self) -> None:
         self.loads: dict[str, ng.Parameter] = {}
@@ -78,6 +80,9 @@ class Term(abc.ABC):
         """After a solve, update what was fixed in it; True asks for another solve."""
         return False
 
+    def commit(self, strain: Array | None) -> None:  # noqa: B027 - most terms have no memory
+        """Move the memory to the end of a step that is accepted; ``strain`` is that of the material points."""
+
     def set_time_step(self, step: float) -> None:  # noqa: B027 - most terms know no time
         """Length of the step that is solved next [s]; infinity for an equilibrium that is left for ever."""
 
@@ -95,6 +100,3 @@ class VolumeTerm(Term):
         Shapes (..., n) and (..., n, n), per reference volume; not a number where the strain is not admissible
         (J <= 0).
         """
-
-    def commit(self, strain: Array) -> None:
-        """Move the memory to the end of a step that is accepted, at its strain."""

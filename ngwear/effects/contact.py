@@ -40,12 +40,12 @@ class Contact(UnilateralContact):
         if slides:
             self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
 
-    def place(self, fields: dict[str, Any]) -> tuple[Any, ...]:
-        x, y = super().place(fields)
+    def motion(self, fields: dict[str, Any]) -> tuple[Any, ...]:
+        x, y = super().motion(fields)
         if self.slid is None:
             return x, y
         ax, ay = self.surface.approach
-        return x + self.slid * ay, y - self.slid * ax
+        return x - self.slid * ay, y + self.slid * ax
 
     def pressure_space(self, body: Body) -> ng.FESpace:
         return ng.Compress(ng.SurfaceL2(body.mesh, order=1, definedon=body.boundary(self.edges)))

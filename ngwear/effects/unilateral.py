@@ -72,6 +72,7 @@ class UnilateralContact(Term):
         self._extent = ng.Parameter(1.0)  # of the whole surface as it is meshed and worn [mm, or mm²]
         kind = "force [N]" if force_controlled else "approach [mm]"
         self.loads = {f"{name} {kind}": self.load}
+        self.tractions = (self.pressure_name,)
 
     @property
     def pressure_name(self) -> str:
@@ -97,12 +98,20 @@ class UnilateralContact(Term):
             spaces[self.travel_name] = ng.NumberSpace(body.mesh)
         return spaces
 
+    def motion(self, fields: dict[str, Any]) -> tuple[Any, ...]:
+        """Displacement of the surface, for trial functions or a state [mm]."""
+        travel = fields[self.travel_name] if self.force_controlled else self.load
+        return tuple(travel * a for a in self.surface.approach)
+
+    def stands(self) -> tuple[float, ...]:
+        """Displacement of the surface in the present state [mm]."""
+        somewhere = self._points[:1]
+        return tuple(np.asarray(ng.CF(m)(somewhere)).item() for m in self.motion(self._state))
+
     def place(self, fields: dict[str, Any]) -> tuple[Any, ...]:
         """Coordinates of X + u in the frame of the moving surface, for trial functions or a state."""
-        u = fields[DISPLACEMENT]
-        travel = fields[self.travel_name] if self.force_controlled else self.load
-        approach = enumerate(self.surface.approach)
-        return tuple(COORDINATES[i] + u[i] - travel * a for i, a in approach)
+        u, motion = fields[DISPLACEMENT], self.motion(fields)
+        return tuple(COORDINATES[i] + u[i] - m for i, m in enumerate(motion))
 
     def gap(self, fields: dict[str, Any]) -> Any:
         """Signed distance of the deformed surface from the surface [mm]."""
@@ -117,7 +126,7 @@ class UnilateralContact(Term):
         give = self.lengths(body) / self.modulus
         self._augmentation = c = 1 / (0.5 * self.softness * give + self.compliance)
         p = unknowns.trial[self.pressure_name]
-        pushed = p - c * self.gap(unknowns.trial)
+        pushed = self.pushed(unknowns.trial)
         closure = 1 + c * (1e-6 * give + self.compliance / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight
@@ -128,6 +137,10 @@ class UnilateralContact(Term):
             travel = unknowns.trial[self.travel_name]
             form += ng.Variation(-self.load * travel / self._extent * ng.ds(definedon=everywhere))
         self._measure()
+
+    def pushed(self, fields: dict[str, Any]) -> Any:
+        """``P - c g``: above 0 where there is contact [MPa]."""
+        return fields[self.pressure_name] - self._augmentation * self.gap(fields)
 
     def force(self) -> Array:
         """Resultant of the contact pressure on the rubber; [N], or N/mm in plane strain."""

@@ -43,7 +43,7 @@ class NewtonOptions:
         Largest accepted last displacement correction over the section's size [-]. Newton converges
         quadratically: the error left is far smaller.
     pressure_tolerance : float
-        Largest accepted last correction of a nominal contact pressure over the highest one [-].
+        Largest accepted last correction of a nominal traction in contact over the highest one [-].
     max_iterations : int
     """
 
@@ -102,10 +102,9 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
 
 
 def _iterate(problem: Problem, options: NewtonOptions) -> Report:
-    contacts = [term for term in problem.terms if isinstance(term, UnilateralContact)]
     size = problem.body.size
     u = problem.part(DISPLACEMENT)
-    pressures = [problem.part(contact.pressure_name) for contact in contacts]
+    pressures = [problem.part(name) for term in problem.terms for name in term.tractions]
     vector = problem.state.vec
     residual, correction, trial = (vector.CreateVector() for _ in range(3))
     report = Report(Outcome.TOO_MANY_ITERATIONS)
@@ -151,7 +150,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
 
 
 def _settled(vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice], options: NewtonOptions) -> bool:
-    """Whether the last correction left the contact pressures alone: on a stiff body they follow the displacement."""
+    """Whether the last correction left the tractions in contact alone: on a stiff body they follow the displacement."""
     values, change = vector.FV().NumPy(), correction.FV().NumPy()
     highest = max((np.abs(values[p]).max() for p in parts), default=0.0)
     moved = max((np.abs(change[p]).max() for p in parts), default=0.0)

@@ -153,10 +153,9 @@ class Problem:
 
     def commit(self) -> None:
         """Accept the present state: memory moves to it."""
-        if self.points is not None:
-            strain = self.points.strain(self.state.vec.FV().NumPy())
-            for term in self._volume:
-                term.commit(strain)
+        strain = None if self.points is None else self.points.strain(self.state.vec.FV().NumPy())
+        for term in self.terms:
+            term.commit(strain)
 
     def threads(self) -> AbstractContextManager[Any]:
         """Context of a solve: all cores if the problem is large enough to gain by them, else one."""

@@ -10,7 +10,7 @@ from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
 
-LOOSER = 1e3  # tolerance of a solve on the way, which is only the start of the next, over the last one's
+LOOSER = 1e3  # tolerance of a solve on the way over the last one's, if it is only the start of the next
 
 
 @dataclass(frozen=True)
@@ -98,6 +98,8 @@ def advance(
     done, step, work = 0.0, options.first if moves else 1.0, Work()
     loose = options.newton.tolerance * LOOSER
     on_the_way = replace(options, newton=replace(options.newton, tolerance=loose))
+    if any(term.remembers for term in problem.terms):
+        on_the_way = options
     while done < 1.0:
         step = min(step, 1.0 - done)
         if 1.0 - done - step < 1e-9:

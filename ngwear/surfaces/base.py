@@ -32,3 +32,11 @@ class RigidSurface(abc.ABC):
         """Unit tangent: the normal turned clockwise, so that a normal (0, 1) has the tangent (1, 0)."""
         nx, ny = self.normal(*place)
         return ny, -1 * nx
+
+    def tangents(self, *place: Any) -> tuple[tuple[Any, ...], ...]:
+        """Unit vectors along the surface: the tangent, and in three dimensions the normal's cross product with it."""
+        along = self.tangent(*place)
+        if len(place) == 2:
+            return (along,)
+        n = self.normal(*place)
+        return along, tuple(n[i - 2] * along[i - 1] - n[i - 1] * along[i - 2] for i in range(3))

@@ -24,6 +24,7 @@ CASES: dict[str, str] = {
     "hunter_transient": "ngwear.verify.hunter_transient",
     "three_arms": "ngwear.verify.three_arms",
     "p1a": "ngwear.verify.p1a",
+    "partial_slip": "ngwear.verify.partial_slip",
     "indentation": "ngwear.verify.indentation",
     "pin_on_plate": "ngwear.verify.pin_on_plate",
     "ring": "ngwear.verify.ring",

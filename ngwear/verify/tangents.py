@@ -22,6 +22,7 @@ from ngwear.effects.contact_patch import PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
+from ngwear.effects.stick_slip import StickSlip
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
@@ -138,6 +139,10 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
                 kinematics,
                 [_UnknownsOf(contact), FullSliding(contact, BY_PRESSURE)],
             )
+            contact = _contact(surface, forced, 0.0)
+            sticks = StickSlip(contact, 0.8)
+            sticks.travel.Set(0.02)
+            yield f"stick and slip, {name}, {how}, {kin}", kinematics, [contact, sticks]
     for kin, kinematics in SECTION.items():
         fluid = FluidPressure(("right", "top"), ("right",), ())
         fluid.pressure.Set(2.0)

@@ -1,0 +1,134 @@
+"""Coulomb friction that sticks and slips: for reversals, partial slip, and surfaces that stand still."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
+from ngwear.effects.unilateral import UnilateralContact
+from ngwear.errors import SceneError
+from ngwear.geometry.meshed import Meshed
+
+RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
+
+
+class StickSlip(Term):
+    """Coulomb's law over one step, from the state of the last accepted one; the nominal traction T is an unknown.
+
+        |T| <= mu P,   s = 0 where |T| < mu P,   else T = - mu P s / |s|
+
+    with the step's slip ``s = t . (x - x_0) - (travel - travel_0)`` along the surface's unit tangents t: x is X + u in
+    the frame of the moving surface, and the load ``"NAME travel [mm]"`` what the surface has moved along itself
+    (a rod that slides, a shaft that turns). One traction for each tangent.
+
+    Newton's method is an active set for P, s and T together (Alart & Curnier, Comput. Methods Appl. Mech. Eng. 92
+    (1991) 353); its tangent is consistent and unsymmetric. Only ``commit`` moves the history, once a step is accepted.
+    The contact must stand before this term in the problem's list.
+
+    Parameters
+    ----------
+    contact : UnilateralContact
+    coefficient : float
+        mu [-], >= 0.
+
+    Raises
+    ------
+    SceneError
+        For a negative coefficient.
+    """
+
+    symmetric = False
+    remembers = True
+
+    def __init__(self, contact: UnilateralContact, coefficient: float) -> None:
+        super().__init__()
+        if not coefficient >= 0:
+            raise SceneError(f"contact {contact.name}.friction", coefficient, "must be at least 0")
+        self.contact, self.coefficient = contact, coefficient
+        self.travel = ng.Parameter(0.0)
+        self._travel_before = ng.Parameter(0.0)
+        self.loads = {f"{contact.name} travel [mm]": self.travel}
+        self._motion_before = [ng.Parameter(0.0) for _ in contact.surface.approach]
+        self.tractions = tuple(f"{contact.name} traction {k + 1}" for k in range(len(self._motion_before) - 1))
+
+    def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
+        region = body.boundary(self.contact.edges)
+        space = ng.Compress(ng.SurfaceL2(body.mesh, order=0, definedon=region))
+        return dict.fromkeys(self.tractions, space)
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        contact, body, weight = self.contact, unknowns.body, unknowns.kinematics.weight
+        self._unknowns = unknowns
+        self._before = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
+        give = contact.lengths(body) / contact.modulus
+        tangents = contact.surface.tangents(*contact.place(unknowns.trial))
+        p = unknowns.trial[contact.pressure_name]
+        bearing = ng.IfPos(contact.pushed(unknowns.trial), ng.IfPos(p, p, 0.0), 0.0)
+        tractions = [unknowns.trial[name] for name in self.tractions]
+        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=self.coefficient * bearing, give=give)
+        work = sum(
+            a * sum(t[i] * unknowns.v[i] for i in range(len(t))) for a, t in zip(tractions, tangents, strict=True)
+        )
+        law = sum(law * unknowns.test[name] for law, name in zip(laws, self.tractions, strict=True))
+        region = body.boundary(contact.edges)
+        form += (-work * weight).Compile() * ng.ds(definedon=region, bonus_intorder=2)
+        points = {ng.SEGM: ng.IntegrationRule(ng.SEGM, 1), ng.TRIG: ng.IntegrationRule(ng.TRIG, 1)}
+        form += (law * weight).Compile() * ng.ds(definedon=region, intrules=points)
+
+    def _slips(self, fields: dict[str, ng.CoefficientFunction], tangents: tuple) -> list[ng.CoefficientFunction]:
+        """Slip along each tangent since the last accepted state [mm]."""
+        u, motion = fields[DISPLACEMENT], self.contact.motion(fields)
+        passed = [u[i] - self._before[i] - m + self._motion_before[i] for i, m in enumerate(motion)]
+        slips = [sum(d * t[i] for i, d in enumerate(passed)) for t in tangents]
+        slips[0] = slips[0] - (self.travel - self._travel_before)
+        return slips
+
+    def commit(self, strain: Array | None) -> None:
+        """Let slip be counted from the present state."""
+        state, contact = self._unknowns.state, self.contact
+        self._before.vec.data = state[DISPLACEMENT].vec
+        self._travel_before.Set(self.travel.Get())
+        for parameter, value in zip(self._motion_before, contact.stands(), strict=True):
+            parameter.Set(value)
+
+    def force(self) -> Array:
+        """Resultant of the friction on the part; [N], or N/mm in plane strain."""
+        state, contact = self._unknowns.state, self.contact
+        tangents = contact.surface.tangents(*contact.place(state))
+        measure = ng.ds(definedon=self._unknowns.body.boundary(contact.edges), bonus_intorder=2)
+        weight, mesh = self._unknowns.kinematics.weight, self._unknowns.body.mesh
+        return np.array(
+            [
+                ng.Integrate(
+                    sum(state[n] * t[i] for n, t in zip(self.tractions, tangents, strict=True)) * weight * measure, mesh
+                )
+                for i in range(len(self._motion_before))
+            ]
+        )
+
+
+def _laws(tractions: list, slips: list, *, bound: ng.CoefficientFunction, give: ng.CoefficientFunction) -> list:
+    """What vanishes for each tangent: the slip where it sticks, the traction less its limit where it slips [mm].
+
+    A point sticks if ``|T - d| < mu P``, where d is the traction ``2 s / give`` of the slip, but a tenth of mu P at
+    most: one whose slip has turned round must stick before it slips the other way, or Newton swings between the two.
+    The tractions are constant on each mesh edge or face and the law holds in its middle: with one unknown for each end
+    they and the displacement of order 2 have as many, and the tractions ring.
+    """
+    stiff = 2 / give
+    if len(tractions) == 1:
+        (traction,), (slip,) = tractions, slips
+        most = RETURN * bound
+        turned = traction - ng.IfPos(stiff * slip - most, most, ng.IfPos(-most - stiff * slip, -most, stiff * slip))
+        sticks = ng.IfPos(bound - turned, ng.IfPos(bound + turned, 1.0, 0.0), 0.0)
+        slides = (traction - ng.IfPos(turned, bound, -bound)) / stiff
+        return [ng.IfPos(sticks, slip + 1e-6 * give * traction, slides)]
+    size = ng.sqrt(sum(s * s for s in slips) + 1e-30)
+    least = ng.IfPos(stiff * size - RETURN * bound, RETURN * bound / size, stiff)
+    turned = [t - least * s for t, s in zip(tractions, slips, strict=True)]
+    length = ng.sqrt(sum(t * t for t in turned) + 1e-30)
+    return [
+        ng.IfPos(bound - length, s + 1e-6 * give * t, (t - bound * a / length) / stiff)
+        for t, s, a in zip(tractions, slips, turned, strict=True)
+    ]
