@@ -264,3 +264,18 @@ def test_pin_slides_with_the_friction_of_its_speed():
     stage.press()
     found = stage.result(80.0, stage.slide(80.0, SteadyOptions(tolerance=2e-3)), 0.0)
     assert found.surface_friction == pytest.approx(law.mu(0.0, 80.0), rel=0.05)
+
+
+def test_shipped_scene_runs_through_the_four_phases():
+    scene = read_scene(PIN.parents[1] / "starving_lubrication" / "scene.toml")
+    rows = run(scene, figures=False).recorder.rows
+    law = scene.contacts[0].friction
+    for row in rows[1:]:
+        way = 100.0 * row["strokes in one solve [-]"]
+        used = law.mu(row["sliding distance [mm]"] - 0.5 * way)
+        assert row["shaft friction coefficient [-]"] == pytest.approx(used, rel=1e-9)
+    films = [row["sliding distance [mm]"] for row in rows if row["shaft friction coefficient [-]"] < 0.0601]
+    dry = [row["sliding distance [mm]"] for row in rows if row["shaft friction coefficient [-]"] > 1.0999]
+    assert 2500 < max(films) < 3500
+    assert 10000 < min(dry) < 12500
+    assert len(rows) > 15
