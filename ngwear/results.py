@@ -247,6 +247,16 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         outline["points [mm]"] = scene.contour.points
         outline["edges"] = np.array(scene.contour.names, dtype=h5py.string_dtype())
         outline.attrs["provenance"] = scene.contour.provenance
+        h5.attrs["memory"] = scene.arms is not None
+        h5.attrs["laws over distance"] = any(
+            c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
+        )
+        contacts = h5.create_group("contacts")
+        for spec in scene.contacts:
+            group = contacts.create_group(spec.name)
+            rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
+            mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
+            group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
         put_series(h5, recorder.rows)
         strokes = h5.create_group("strokes")
         for number, snapshot in enumerate(recorder.snapshots):

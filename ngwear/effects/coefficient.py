@@ -6,6 +6,7 @@ from typing import Any
 
 import ngsolve as ng
 
+from ngwear.errors import SceneError
 from ngwear.laws import Constant, FrictionLaw
 
 
@@ -17,12 +18,21 @@ class Coefficient:
 
     Parameters
     ----------
+    contact : str
+        Its name, for complaints.
     law : FrictionLaw or float
     speed : float or None
         Of the sliding at first [mm/s], at the distance 0.
+
+    Raises
+    ------
+    SceneError
+        For a negative coefficient.
     """
 
-    def __init__(self, law: FrictionLaw | float, *, speed: float | None = None) -> None:
+    def __init__(self, contact: str, law: FrictionLaw | float, *, speed: float | None = None) -> None:
+        if not isinstance(law, FrictionLaw) and not law >= 0:
+            raise SceneError(f"contact {contact}.friction", law, "must be at least 0")
         self.law = law if isinstance(law, FrictionLaw) else Constant(value=law)
         self._held = [ng.Parameter(number) for number in self.law.held(0.0, speed)]
 

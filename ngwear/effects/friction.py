@@ -43,7 +43,7 @@ class FullSliding(Term):
 
     def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
         super().__init__()
-        self.contact, self.coefficient = contact, Coefficient(law, speed=speed)
+        self.contact, self.coefficient = contact, Coefficient(contact.name, law, speed=speed)
         self.slip = ng.Parameter(1.0)
         self.loads = {f"{contact.name} slip": self.slip}
 

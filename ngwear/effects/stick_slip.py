@@ -12,6 +12,7 @@ from ngwear.geometry.meshed import Meshed
 from ngwear.laws import FrictionLaw
 
 RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
+NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
 
 
 class StickSlip(Term):
@@ -51,7 +52,7 @@ class StickSlip(Term):
 
     def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
         super().__init__()
-        self.contact, self.coefficient = contact, Coefficient(law, speed=speed)
+        self.contact, self.coefficient = contact, Coefficient(contact.name, law, speed=speed)
         self.travel = ng.Parameter(0.0)
         self._travel_before = ng.Parameter(0.0)
         self.loads = {f"{contact.name} travel [mm]": self.travel}
@@ -69,11 +70,10 @@ class StickSlip(Term):
         self._before = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         give = contact.lengths(body) / contact.modulus
         tangents = contact.surface.tangents(*contact.place(unknowns.trial))
-        p = unknowns.trial[contact.pressure_name]
-        bearing = ng.IfPos(contact.pushed(unknowns.trial), ng.IfPos(p, p, 0.0), 0.0)
         tractions = [unknowns.trial[name] for name in self.tractions]
+        p = unknowns.trial[contact.pressure_name] - NOTHING * contact.modulus
         stretch = unknowns.kinematics.area_stretch(unknowns.u, ng.Grad(unknowns.u).Trace())
-        bound = self.coefficient(p / stretch) * bearing
+        bound = self.coefficient(p / stretch) * ng.IfPos(p, p, 0.0)
         laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give)
         work = sum(
             a * sum(t[i] * unknowns.v[i] for i in range(len(t))) for a, t in zip(tractions, tangents, strict=True)

@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ngwear.plots.wear import COLOURS, ResultFile, new_figure
+from ngwear.plots.wear import COLOURS, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ngwear.laws.fit import LubricationFit
+    from ngwear.result_file import ResultFile
 
 QUANTITIES = ("friction coefficient [-]", "specific wear rate [mm^2/N]")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files import get_series
+from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,69 +17,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 COLOURS = ("#1b6ca8", "#d1495b", "#2e933c", "#8d6a9f", "#e0a030")
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """Outline and contact profiles at one solved stroke, as read from ``result.h5``."""
-
-    stroke: int
-    kind: str
-    outline: Array
-    profiles: dict[str, dict[str, Array]]
-    mesh: dict[str, Array]
-
-
-@dataclass(frozen=True)
-class ResultFile:
-    """Contents of ``result.h5``."""
-
-    scene: str
-    outline: Array
-    series: dict[str, Array]
-    snapshots: list[Snapshot]
-
-    @property
-    def kinds(self) -> list[str]:
-        """The strokes of the cycle by name, in their order."""
-        return list(dict.fromkeys(s.kind for s in self.snapshots))
-
-    def at(self, stroke: float, kind: str) -> Snapshot:
-        """The latest snapshot of a kind whose stroke is nearest."""
-        mine = [s for s in self.snapshots if s.kind == kind]
-        return min(reversed(mine), key=lambda s: abs(s.stroke - stroke))
-
-
-def read_result(folder: Path | str) -> ResultFile:
-    """Read a run's ``result.h5``.
-
-    Raises
-    ------
-    ResultError
-        If the file is missing or damaged.
-    """
-    import h5py
-
-    file = Path(folder) / "result.h5"
-    if not file.is_file():
-        raise ResultError(f"{file} does not exist: give the folder of a run that has ended (see ngwear run --out)")
-    try:
-        with h5py.File(file, "r") as h5:
-            snapshots = []
-            for group in h5["strokes"].values():
-                parts = {k: {n: d[()] for n, d in g.items()} for k, g in group.items() if isinstance(g, h5py.Group)}
-                snapshots.append(
-                    Snapshot(
-                        int(group.attrs["stroke"]),
-                        str(group.attrs["kind"]),
-                        group["outline [mm]"][()],
-                        {k: v for k, v in parts.items() if k != "mesh"},
-                        parts.get("mesh", {}),
-                    )
-                )
-            return ResultFile(str(h5.attrs["scene"]), h5["outline/points [mm]"][()], get_series(h5), snapshots)
-    except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
-        raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
 
 
 def plot(folder: Path | str) -> list[Path]:
