@@ -15,6 +15,7 @@ from ngwear.errors import SceneError
 from ngwear.explain import explain
 from ngwear.laws import ByPressure, Lubrication, Product, Stribeck, WearRate
 from ngwear.materials import MooneyRivlin, PronySeries
+from ngwear.result_file import read_result
 from ngwear.run import run
 from ngwear.scene import Program, Stroke
 from ngwear.scenefile import read_scene
@@ -167,6 +168,9 @@ def test_jump_does_not_skip_a_phase(tmp_path, write_sheet):
     with (tmp_path / "out" / "series.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert (tmp_path / "out" / "laws.png").is_file()
+    kept = read_result(tmp_path / "out")
+    assert kept.drifts
+    assert kept.wear_rates["roller"] == pytest.approx(scene.contacts[0].wear_rate.curve.mean(0.0, 400.0))
     mu, k = np.array([[float(row[MU]), float(row[K])] for row in rows]).T
     repeats = np.array([int(row["strokes in one solve [-]"]) for row in rows])
     assert repeats.max() > 1
@@ -185,6 +189,7 @@ def test_jump_does_not_skip_a_phase(tmp_path, write_sheet):
 
 
 def test_number_needs_no_column(finished):
+    assert not read_result(finished).drifts
     header = (finished / "series.csv").read_text().splitlines()[0]
     assert "coefficient" not in header
     assert "wear rate" not in header
