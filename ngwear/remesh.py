@@ -59,8 +59,8 @@ def remesh(state: State, contour: Contour | None = None) -> None:
 
 
 def _moved_values(before: Contour, after: Contour, values: Array) -> Array:
-    """Values at the points of one outline at those of another with almost the same shape."""
+    """Values at the points of one outline, their last axis, at those of another with almost the same shape."""
     from scipy.spatial import cKDTree
 
     _, nearest = cKDTree(before.points).query(after.points)
-    return values[nearest]
+    return values[..., nearest]

@@ -37,10 +37,13 @@ class ResultFile:
     edges : tuple of str, length n
         Name of each of its segments.
     wear_rates : dict
-        Specific wear rate k of each contact that wears [mm²/N]; empty in files of before it was kept.
+        Specific wear rate k of each contact that wears, its mean over the run [mm²/N]; empty in files of before it was
+        kept.
     worn_edges : tuple of str
     remembers : bool
         Whether the rubber has memory.
+    drifts : bool
+        Whether a law of friction or wear changes with the sliding distance.
     series : dict of array
         Columns as in ``series.csv``; row i belongs to snapshot i.
     snapshots : list of Snapshot
@@ -52,6 +55,7 @@ class ResultFile:
     wear_rates: dict[str, float]
     worn_edges: tuple[str, ...]
     remembers: bool
+    drifts: bool
     series: dict[str, Array]
     snapshots: list[Snapshot]
 
@@ -104,6 +108,7 @@ def read_result(folder: Path | str) -> ResultFile:
                     dict.fromkeys(str(edge) for attributes in worn.values() for edge in attributes["edges"])
                 ),
                 remembers=bool(h5.attrs.get("memory", False)),
+                drifts=bool(h5.attrs.get("laws over distance", False)),
                 series=get_series(h5),
                 snapshots=snapshots,
             )

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.coefficient import Coefficient
 from ngwear.effects.unilateral import UnilateralContact
-from ngwear.errors import SceneError
+from ngwear.laws import Constant, FrictionLaw
 
 
 class FullSliding(Term):
@@ -20,8 +23,15 @@ class FullSliding(Term):
     Parameters
     ----------
     contact : UnilateralContact
-    coefficient : float
-        mu [-], >= 0.
+    law : FrictionLaw or float
+        mu [-], >= 0. A law by pressure takes the Cauchy pressure P / (da/dA) of the state that is sought.
+    speed : float or None
+        Of the sliding at first [mm/s].
+
+    Attributes
+    ----------
+    coefficient : Coefficient
+        Its ``set_state`` goes to the distance and the speed of the next solve.
 
     Raises
     ------
@@ -31,36 +41,52 @@ class FullSliding(Term):
 
     symmetric = False
 
-    def __init__(self, contact: UnilateralContact, coefficient: float) -> None:
+    def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
         super().__init__()
-        if coefficient < 0:
-            raise SceneError(f"contact {contact.name}.friction", coefficient, "must be at least 0")
-        self.contact, self.coefficient = contact, coefficient
+        self.contact, self.coefficient = contact, Coefficient(contact.name, law, speed=speed)
         self.slip = ng.Parameter(1.0)
         self.loads = {f"{contact.name} slip": self.slip}
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         contact = self.contact
         p = unknowns.trial[contact.pressure_name]
+        u = unknowns.u
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
-        traction = self.coefficient * self.slip * p * unknowns.kinematics.weight
+        stretch = unknowns.kinematics.area_stretch(u, ng.Grad(u).Trace())
+        traction = self.coefficient(p / stretch) * self.slip * p * unknowns.kinematics.weight
         work = -traction * sum(t * unknowns.v[i] for i, t in enumerate(tangent))
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
 
+    @property
+    def varies(self) -> bool:
+        """Whether the law is more than a number."""
+        return not isinstance(self.coefficient.law, Constant)
+
+    def mu(self) -> Any:
+        """Coefficient of friction at the present state [-], a field for a law by pressure."""
+        state, kinematics = self._unknowns.state, self._unknowns.kinematics
+        u = state[DISPLACEMENT]
+        return self.coefficient(state[self.contact.pressure_name] / kinematics.area_stretch(u, ng.Grad(u)))
+
+    def mean(self) -> float:
+        """Friction over load, ``int mu P dA / int P dA`` [-]; 0 out of contact."""
+        load = self._integral(1.0, 1.0)
+        return self.drag() / load if load > 0 else 0.0
+
     def force(self) -> np.ndarray:
         """Resultant of the friction on the part; [N], or N/mm in plane strain."""
         tangent = self.contact.surface.tangent(*self.contact.place(self._unknowns.state))
-        return np.array([self._integral(self.slip.Get() * t) for t in tangent])
+        return np.array([self._integral(self.mu(), self.slip.Get() * t) for t in tangent])
 
     def drag(self) -> float:
         """``int mu P dA``: heat of the friction over the way that the surface slides; [N], or N/mm in plane strain."""
-        return self._integral(1.0)
+        return self._integral(self.mu(), 1.0)
 
-    def _integral(self, factor: ng.CoefficientFunction | float) -> float:
+    def _integral(self, mu: Any, factor: ng.CoefficientFunction | float) -> float:
         """Of the traction ``mu P`` times a factor."""
         known, contact = self._unknowns, self.contact
-        traction = self.coefficient * known.state[contact.pressure_name] * known.kinematics.weight
+        traction = mu * known.state[contact.pressure_name] * known.kinematics.weight
         measure = ng.ds(definedon=known.body.boundary(contact.edges), bonus_intorder=2)
         return float(ng.Integrate(factor * traction * measure, known.body.mesh))

@@ -6,12 +6,12 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
+from ngwear.effects.coefficient import Coefficient
 from ngwear.effects.unilateral import UnilateralContact
-from ngwear.errors import SceneError
 from ngwear.geometry.meshed import Meshed
+from ngwear.laws import FrictionLaw
 
 RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
-
 NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
 
 
@@ -31,8 +31,15 @@ class StickSlip(Term):
     Parameters
     ----------
     contact : UnilateralContact
-    coefficient : float
-        mu [-], >= 0.
+    law : FrictionLaw or float
+        mu [-], >= 0. A law by pressure takes the Cauchy pressure P / (da/dA) of the state that is sought.
+    speed : float or None
+        Of the sliding at first [mm/s].
+
+    Attributes
+    ----------
+    coefficient : Coefficient
+        Its ``set_state`` goes to the distance and the speed of the next step.
 
     Raises
     ------
@@ -43,11 +50,9 @@ class StickSlip(Term):
     symmetric = False
     remembers = True
 
-    def __init__(self, contact: UnilateralContact, coefficient: float) -> None:
+    def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
         super().__init__()
-        if not coefficient >= 0:
-            raise SceneError(f"contact {contact.name}.friction", coefficient, "must be at least 0")
-        self.contact, self.coefficient = contact, coefficient
+        self.contact, self.coefficient = contact, Coefficient(contact.name, law, speed=speed)
         self.travel = ng.Parameter(0.0)
         self._travel_before = ng.Parameter(0.0)
         self.loads = {f"{contact.name} travel [mm]": self.travel}
@@ -67,7 +72,8 @@ class StickSlip(Term):
         tangents = contact.surface.tangents(*contact.place(unknowns.trial))
         tractions = [unknowns.trial[name] for name in self.tractions]
         p = unknowns.trial[contact.pressure_name] - NOTHING * contact.modulus
-        bound = self.coefficient * ng.IfPos(p, p, 0.0)
+        stretch = unknowns.kinematics.area_stretch(unknowns.u, ng.Grad(unknowns.u).Trace())
+        bound = self.coefficient(p / stretch) * ng.IfPos(p, p, 0.0)
         laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give)
         work = sum(
             a * sum(t[i] * unknowns.v[i] for i in range(len(t))) for a, t in zip(tractions, tangents, strict=True)

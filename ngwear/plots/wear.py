@@ -29,10 +29,14 @@ def plot(folder: Path | str) -> list[Path]:
     """
     import matplotlib
 
+    from ngwear.plots.laws import has_laws, law_figure
+
     result = read_result(folder)
     if not result.snapshots:
         return []
     figures = {"mesh": mesh_figure, "profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
+    if has_laws(result):
+        figures["laws"] = law_figure
     written = []
     with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         for name, draw in figures.items():
@@ -49,9 +53,10 @@ def plot(folder: Path | str) -> list[Path]:
     return written
 
 
-def _new(
+def new_figure(
     rows: int, heights: tuple[float, ...], *, size: tuple[float, float], share: bool = True
 ) -> tuple[Figure, list[Axes]]:
+    """Figure with panels one above the other, of the given heights."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -73,9 +78,11 @@ def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
 def mesh_figure(result: ResultFile) -> Figure:
     """Deformed mesh at the first stroke of the cycle, over its contact pressure."""
     first = result.snapshots[0]
-    figure, (upper, lower) = _new(2, (3.2, 1), size=(8, 9))
+    points = first.mesh.get("points [mm]", result.outline)
+    wide, high = np.ptp(points, axis=0)
+    upper_share = 4 * min(max(high / wide, 0.2), 0.8)
+    figure, (upper, lower) = new_figure(2, (upper_share, 1), size=(8, 2.14 * (upper_share + 1)))
     if first.mesh:
-        points = first.mesh["points [mm]"]
         upper.triplot(points[:, 0], points[:, 1], first.mesh["triangles"], lw=0.3, color=COLOURS[0])
         low = points.min(axis=0)
         upper.set_xlim(low[0] - 0.1, points[:, 0].max() + 0.1)
@@ -113,7 +120,7 @@ def profile_figure(result: ResultFile) -> Figure:
     last = result.snapshots[-1].stroke
     strokes = sorted({0, last // 2, last})
     kinds = result.kinds
-    figure, axes = _new(1 + len(kinds), (1.2, *[1.0] * len(kinds)), size=(10, 3.2 * (1 + len(kinds))))
+    figure, axes = new_figure(1 + len(kinds), (1.2, *[1.0] * len(kinds)), size=(10, 3.2 * (1 + len(kinds))))
     window = _window(result)
     heights = []
     for colour, stroke in zip(COLOURS, strokes, strict=False):
@@ -121,14 +128,16 @@ def profile_figure(result: ResultFile) -> Figure:
         closed = np.vstack([shown.outline, shown.outline[:1]])
         axes[0].plot(closed[:, 0], closed[:, 1], color=colour, lw=1.0, label=f"after {shown.stroke} strokes")
         for profile in shown.profiles.values():
-            heights.append(profile["reference [mm]"][profile["pressure [MPa]"] > 0, 1])
+            touched = profile["reference [mm]"][profile["pressure [MPa]"] > 0]
+            apart = np.linalg.norm(touched[:, None] - shown.outline, axis=-1)
+            heights.append(shown.outline[apart.argmin(axis=1), 1])
         for panel, kind in zip(axes[1:], kinds, strict=True):
             snapshot = result.at(stroke, kind)
             _pressure(panel, snapshot, color=colour, lw=1.0, label=f"after {snapshot.stroke} strokes")
-    touched = np.concatenate(heights) if heights else np.zeros(0)
-    if len(touched):
-        room = max(np.ptp(touched), 1e-3)
-        axes[0].set_ylim(touched.min() - 0.3 * room, touched.max() + 0.3 * room)
+    height = np.concatenate(heights) if heights else np.zeros(0)
+    if len(height):
+        room = max(np.ptp(height), 1e-3)
+        axes[0].set_ylim(height.min() - 0.3 * room, height.max() + 0.3 * room)
     axes[0].set_xlim(*window)
     axes[0].set_ylabel("outline, unloaded: y [mm]")
     axes[0].set_title(f"{result.scene}: worn outline and contact pressure")
@@ -144,7 +153,7 @@ def peak_figure(result: ResultFile) -> Figure:
     """Pressure around the highest peak after 0, a quarter and a half of the strokes, for the first stroke kind."""
     kind = result.kinds[0]
     last = result.snapshots[-1].stroke
-    figure, (axes,) = _new(1, (1,), size=(7, 4.5))
+    figure, (axes,) = new_figure(1, (1,), size=(7, 4.5))
     centre, width = _highest(result.at(0, kind))
     for colour, stroke in zip(COLOURS, sorted({0, last // 4, last // 2, last}), strict=False):
         snapshot = result.at(stroke, kind)
@@ -180,7 +189,7 @@ def history_figure(result: ResultFile) -> Figure:
     """Depth with its error band, peak pressure and contact width over strokes."""
     series, kinds = result.series, result.kinds
     stroke = series["stroke [-]"]
-    figure, axes = _new(3, (1.3, 1, 1), size=(8, 9))
+    figure, axes = new_figure(3, (1.3, 1, 1), size=(8, 9))
     depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
     axes[0].plot(stroke, depth, color="k", lw=1.2, label="maximum")
     axes[0].fill_between(stroke, depth - error, depth + error, color="0.8", label="error estimate")

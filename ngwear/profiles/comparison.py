@@ -144,10 +144,10 @@ def compare_profile(
     outlines f times sooner. The distance d* of the run whose outline meets the profile best hence gives
     ``k = k_run d* / d_part``, without another run; with several contacts all rates are scaled alike.
 
-    It does not hold when something besides k p dd depends on the distance or on time: a rate that changes with the
-    strokes, or rubber with memory before it has settled (a note says so). The standard error is the profile's alone;
-    what the run estimates of its own error (``summary.json``) comes on top. Where nothing unworn is measured, wear and
-    a shift of height cannot be told apart, and the standard error shows it.
+    It does not hold when something besides k p dd depends on the distance or on time: friction or a rate that changes
+    with the distance, or rubber with memory before it has settled (a note says so). The standard error is the profile's
+    alone; what the run estimates of its own error (``summary.json``) comes on top. Where nothing unworn is measured,
+    wear and a shift of height cannot be told apart, and the standard error shows it.
 
     Parameters
     ----------
@@ -253,4 +253,6 @@ def _notes(profile: Profile, edge: WornEdge, found: Alignment, slid: float) -> l
         )
     if edge.remembers:
         notes.append("the rubber remembers: its outlines depend on time, too, and the wear rate is approximate")
+    if edge.drifts:
+        notes.append("friction or wear follow the sliding distance: the wear rate, a mean over the run, is approximate")
     return notes

@@ -39,6 +39,8 @@ class WornEdge:
         Specific wear rate k of each contact that wears in the run [mm²/N].
     remembers : bool
         Whether the run's rubber has memory.
+    drifts : bool
+        Whether friction or the wear rate changed with the sliding distance.
     """
 
     scene: str
@@ -49,6 +51,7 @@ class WornEdge:
     strokes: Array
     wear_rates: dict[str, float]
     remembers: bool
+    drifts: bool
 
     @property
     def end(self) -> float:
@@ -124,6 +127,7 @@ def read_worn_edge(folder: Path | str, *, edges: Sequence[str] = ()) -> WornEdge
         strokes=np.array(list(kept), dtype=float),
         wear_rates=result.wear_rates,
         remembers=result.remembers,
+        drifts=result.drifts,
     )
 
 

@@ -32,6 +32,7 @@ CASES: dict[str, str] = {
     "worn_cylinder": "ngwear.verify.worn_cylinder",
     "measured_profile": "ngwear.verify.measured_profile",
     "stability_pair": "ngwear.verify.stability_pair",
+    "lubrication": "ngwear.verify.lubrication",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
     "rod_seal_filled": "ngwear.verify.rod_seal_filled",

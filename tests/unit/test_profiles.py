@@ -36,6 +36,7 @@ def edge():
         strokes=DISTANCE / 10,
         wear_rates={"rod": 2e-6},
         remembers=False,
+        drifts=False,
     )
 
 

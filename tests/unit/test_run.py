@@ -457,12 +457,12 @@ def test_failed_jump_is_taken_back_and_halved(tmp_path, write_sheet, monkeypatch
     scene = read_scene(jumping(tmp_path, write_sheet))
     real, failed = Stepper._wear, []
 
-    def wear(self, state, index, distance):
-        if distance > 10 and not failed:
+    def wear(self, state, index, sliding):
+        if sliding.distance > 10 and not failed:
             failed.append(state.strokes)
-            real(self, state, index, distance)
+            real(self, state, index, sliding)
             raise GeometryError("made to fail")
-        return real(self, state, index, distance)
+        return real(self, state, index, sliding)
 
     monkeypatch.setattr(Stepper, "_wear", wear)
     with caplog.at_level(logging.INFO):
