@@ -8,7 +8,7 @@ Both are timed in this one run (processor time). The direct solve takes the coar
 least as close to the closed form as the march's, so that a ratio of 3 means three times cheaper at equal error or
 better. The march is dear where the contact is long against V tau (fine elements, a contact hard to find) or the wake
 long against the contact (a long track). In between it needs some twenty steps only. Measured in two runs, from 1
-to 2000 mm/s: 17, 5.5 to 6.6, 3.5, 4.2, 4.2 to 5.2, 4.0, 156 to 211; over all speeds, what a friction curve costs, 35.
+to 2000 mm/s: 17, 5.5 to 6.6, 3.5, 4.2, 4.2 to 5.2, 4.0 and 156 to 211; over all speeds 35, what a curve costs.
 
 Equal is the error of the friction alone. Where the march is off by 1 % (20 to 50 mm/s) the direct solve makes do with
 two elements in the middle of the contact and fine ones at its ends, and its half length is 2 to 4 % off.
