@@ -95,8 +95,7 @@ class Recorder:
             row[f"{contact} contact zones [-]"] = len(zones)
         for name, force in report.forces.items():
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
-        for name, drag in report.drags.items():
-            heat = drag * cycle[report.phase].travel
+        for name, heat in report.heats.items():
             row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
         row |= {f"{name} friction coefficient [-]": mu for name, mu in report.coefficients.items()}
         row |= {f"{name} specific wear rate [mm^2/N]": rate for name, rate in report.wear_rates.items()}

@@ -114,8 +114,8 @@ class StrokeReport:
         The followed contacts at equilibrium.
     forces : dict of str to array, shape (2,)
         Resultants on the part [N, or N/mm].
-    drags : dict of str to float
-        Friction's heat over the way slid, of each contact that has friction [N, or N/mm].
+    heats : dict of str to float
+        Heat of the friction in one stroke, of each contact that has friction [mJ, or mJ/mm].
     coefficients, wear_rates : dict of str to float
         Mean friction coefficient under the pressure [-] and mean k of the strokes [mm²/N], of the contacts whose law is
         no constant.
@@ -133,7 +133,7 @@ class StrokeReport:
     iterations: int
     contacts: dict[str, ContactProfile]
     forces: dict[str, Array]
-    drags: dict[str, float]
+    heats: dict[str, float]
     coefficients: dict[str, float]
     wear_rates: dict[str, float]
     leaks: bool

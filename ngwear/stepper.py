@@ -311,7 +311,7 @@ class Stepper:
             iterations=iterations,
             contacts={spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed},
             forces=stage.forces(),
-            drags={name: friction.drag() for name, friction in stage.frictions.items()},
+            heats={name: friction.heat(sliding.travel) for name, friction in stage.frictions.items()},
             coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
             wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
             leaks=stage.fluid is not None and stage.fluid.leaks,

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
-from ngwear.effects.coefficient import Coefficient
+from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
+from ngwear.effects.friction import Friction
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.meshed import Meshed
 from ngwear.laws import FrictionLaw
@@ -15,7 +15,7 @@ RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below 
 NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
 
 
-class StickSlip(Term):
+class StickSlip(Friction):
     """Coulomb's law over one step, from the state of the last accepted one; the nominal traction T is an unknown.
 
         |T| <= mu P,   s = 0 where |T| < mu P,   else T = - mu P s / |s|
@@ -28,31 +28,13 @@ class StickSlip(Term):
     (1991) 353); its tangent is consistent and unsymmetric. Only ``commit`` moves the history, once a step is accepted.
     The contact must stand before this term in the problem's list.
 
-    Parameters
-    ----------
-    contact : UnilateralContact
-    law : FrictionLaw or float
-        mu [-], >= 0. A law by pressure takes the Cauchy pressure P / (da/dA) of the state that is sought.
-    speed : float or None
-        Of the sliding at first [mm/s].
-
-    Attributes
-    ----------
-    coefficient : Coefficient
-        Its ``set_state`` goes to the distance and the speed of the next step.
-
-    Raises
-    ------
-    SceneError
-        For a negative coefficient.
+    Parameters and errors as of ``Friction``; the coefficient's distance and speed are those of the step.
     """
 
-    symmetric = False
     remembers = True
 
     def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
-        super().__init__()
-        self.contact, self.coefficient = contact, Coefficient(contact.name, law, speed=speed)
+        super().__init__(contact, law, speed=speed)
         self.travel = ng.Parameter(0.0)
         self._travel_before = ng.Parameter(0.0)
         self.loads = {f"{contact.name} travel [mm]": self.travel}
@@ -101,19 +83,18 @@ class StickSlip(Term):
             parameter.Set(value)
 
     def force(self) -> Array:
-        """Resultant of the friction on the part; [N], or N/mm in plane strain."""
-        state, contact = self._unknowns.state, self.contact
-        tangents = contact.surface.tangents(*contact.place(state))
-        measure = ng.ds(definedon=self._unknowns.body.boundary(contact.edges), bonus_intorder=2)
-        weight, mesh = self._unknowns.kinematics.weight, self._unknowns.body.mesh
+        state = self._unknowns.state
+        tangents = self.contact.surface.tangents(*self.contact.place(state))
+        pairs = list(zip(self.tractions, tangents, strict=True))
         return np.array(
-            [
-                ng.Integrate(
-                    sum(state[n] * t[i] for n, t in zip(self.tractions, tangents, strict=True)) * weight * measure, mesh
-                )
-                for i in range(len(self._motion_before))
-            ]
+            [self._integral(sum(state[n] * t[i] for n, t in pairs)) for i in range(len(self._motion_before))]
         )
+
+    def heat(self, way: float) -> float:
+        """``- int T . s dA`` of the step's slip s, whatever the way."""
+        state = self._unknowns.state
+        slips = self._slips(state, self.contact.surface.tangents(*self.contact.place(state)))
+        return -self._integral(sum(state[n] * s for n, s in zip(self.tractions, slips, strict=True)))
 
 
 def _laws(tractions: list, slips: list, *, bound: ng.CoefficientFunction, give: ng.CoefficientFunction) -> list:
