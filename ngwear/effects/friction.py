@@ -17,6 +17,8 @@ class FullSliding(Term):
     surface's normal turned clockwise); values between ramp a reversal. Neglects the stick phase after a
     reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric.
 
+    A surface under force carries the friction too: the force balances pressure and friction together.
+
     Parameters
     ----------
     contact : UnilateralContact
@@ -44,7 +46,11 @@ class FullSliding(Term):
         p = unknowns.trial[contact.pressure_name]
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
         traction = self.coefficient * self.slip * p * unknowns.kinematics.weight
-        work = -traction * sum(t * unknowns.v[i] for i, t in enumerate(tangent))
+        virtual = [unknowns.v[i] for i in range(len(tangent))]
+        if contact.force_controlled:  # the force carries the friction too
+            travel = unknowns.test[contact.travel_name]
+            virtual = [v - travel * a for v, a in zip(virtual, contact.surface.approach, strict=True)]
+        work = -traction * sum(t * v for t, v in zip(tangent, virtual, strict=True))
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
