@@ -70,15 +70,13 @@ class Recorder:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
-        full, part = divmod(report.last_stroke, len(cycle))
-        sliding = full * sum(s.travel for s in cycle) + sum(s.travel for s in cycle[:part])
         depth = depths(scene.contour, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
             "stroke [-]": report.last_stroke,
             "kind [-]": cycle[report.phase].name,
             "strokes in one solve [-]": report.repeats,  # 0: the outline as it is, without wear
-            "sliding distance [mm]": sliding,
+            "sliding distance [mm]": scene.program.sliding(report.last_stroke),
             "worn area by the law [mm^2]": ledger.worn,
             "area removed from the outline [mm^2]": ledger.removed,
             "error estimate of worn area [mm^2]": ledger.area_error,
