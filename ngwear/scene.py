@@ -187,6 +187,9 @@ class Accuracy:
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side.
     folding_error : float
         Largest relative error of stress that arms of the memory may cause by being folded away [-].
+    pointwise : float
+        Volumetric stiffness kept at each point over the shear modulus [-], >= 0; the energy is the same for all.
+        Pressures of several G ask for about 10, friction of about G for 0 (``effects.elasticity``).
     """
 
     patch: float = 0.01
@@ -197,6 +200,7 @@ class Accuracy:
     stress_error: float = 0.05
     wear_error: float = 0.08
     folding_error: float = 1e-3
+    pointwise: float = 10.0
 
     def __post_init__(self) -> None:
         _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
@@ -209,11 +213,17 @@ class Accuracy:
         _require(
             0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
         )
+        _require(
+            0 <= self.pointwise < math.inf, "accuracy.pointwise", self.pointwise, "must be at least 0 and not infinite"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wear:
-    """How the worn depth is integrated.
+    """How the worn depth is integrated, and what becomes of the mesh.
+
+    The nodes follow the worn outline, those inside smoothly; a mesh can do so until its elements are squeezed or folded
+    (``Body.move_to``). With ``remesh`` other than ``"due"`` it is fine at once wherever the wear may take the contact.
 
     Parameters
     ----------
@@ -223,11 +233,15 @@ class Wear:
         ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"each"``: every stroke.
     max_jump : int
         Most cycles at once.
+    remesh : str
+        ``"due"``: a new mesh as soon as another would be better for the present contact; ``"limit"``: once the nodes
+        cannot be moved any further; ``"never"``: the run gives up there.
     """
 
     scheme: str = "implicit"
     step: str = "jump"
     max_jump: int = 1000
+    remesh: str = "due"
 
     def __post_init__(self) -> None:
         _require(
@@ -235,6 +249,9 @@ class Wear:
         )
         _require(self.step in ("jump", "each"), "wear.step", self.step, "must be 'jump' or 'each'")
         _require(self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
+        _require(
+            self.remesh in ("due", "limit", "never"), "wear.remesh", self.remesh, "must be 'due', 'limit' or 'never'"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -40,7 +40,7 @@ class Stage:
         self.scene, self.body = scene, body
         rubber = scene.rubber
         modulus = rubber.shear_modulus
-        self.elasticity = Elasticity(rubber, order=scene.accuracy.order)
+        self.elasticity = Elasticity(rubber, order=scene.accuracy.order, pointwise=scene.accuracy.pointwise)
         self.contacts = {
             spec.name: Contact(
                 spec.name, spec.edges, spec.surface, modulus=modulus, force_controlled=spec.force is not None

@@ -19,10 +19,11 @@ from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settl
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import smoothed
 from ngwear.refinement import mounting_field, outgrown, wanted_size
-from ngwear.remesh import is_due, remesh
+from ngwear.remesh import is_due, remesh, still_to_slide
 from ngwear.scene import Scene, Stroke
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
@@ -87,7 +88,8 @@ class Stepper:
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
-        while outgrown(state.stage, [p.vector for p in state.phases]) and state.ledger.remeshes < 4:
+        ahead = still_to_slide(state)
+        while outgrown(state.stage, [p.vector for p in state.phases], sliding=ahead) and state.ledger.remeshes < 4:
             remesh(state)
             state.reports = []
             for i, stroke in enumerate(scene.program.cycle):
@@ -373,14 +375,32 @@ class Stepper:
                 f"the outline lost {removed:.4g} mm² where the law wears {share.sum():.4g} mm²: healing took too much"
             )
         state.ledger.removed += removed
-        if len(new) == len(contour):
-            try:
-                stage.body.move_to(new)
-                return known
-            except MeshError as error:
-                log.info("%s: a new mesh is needed", error)
-        remesh(state, new)
+        self._follow(state, new)
         return known
+
+    def _follow(self, state: State, worn: Contour) -> None:
+        """Let the mesh follow to a worn outline; make a new one where it cannot, unless the scene forbids it.
+
+        Raises
+        ------
+        MeshError
+            If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
+        """
+        body, why = state.stage.body, "the outline needs other points"
+        if len(worn) == len(body.contour):
+            try:
+                body.move_to(worn)
+                return
+            except MeshError as error:
+                why = str(error)
+        if self.scene.wear.remesh == "never":
+            deepest = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
+            raise MeshError(
+                f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; go on with new meshes "
+                "by wear.remesh = 'limit' or 'due', or begin with larger elements (accuracy.patch)"
+            )
+        log.info("%s: a new mesh is needed", why)
+        remesh(state, worn)
 
 
 def _without_fluid(loads: dict[str, float]) -> dict[str, float]:

@@ -17,6 +17,8 @@ from ngwear.laws import Constant, FrictionLaw
 class Friction(Term):
     """Coulomb friction of a contact under a law.
 
+    A surface under force carries the friction too: the force balances pressure and friction together.
+
     Parameters
     ----------
     contact : UnilateralContact
@@ -95,7 +97,7 @@ class FullSliding(Friction):
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
         stretch = unknowns.kinematics.area_stretch(u, ng.Grad(u).Trace())
         traction = self.coefficient(p / stretch) * self.slip * p * unknowns.kinematics.weight
-        work = -traction * sum(t * unknowns.v[i] for i, t in enumerate(tangent))
+        work = -traction * sum(t * v for t, v in zip(tangent, contact.virtual(unknowns), strict=True))
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)

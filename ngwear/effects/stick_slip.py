@@ -57,9 +57,8 @@ class StickSlip(Friction):
         stretch = unknowns.kinematics.area_stretch(unknowns.u, ng.Grad(unknowns.u).Trace())
         bound = self.coefficient(p / stretch) * ng.IfPos(p, p, 0.0)
         laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give)
-        work = sum(
-            a * sum(t[i] * unknowns.v[i] for i in range(len(t))) for a, t in zip(tractions, tangents, strict=True)
-        )
+        virtual = contact.virtual(unknowns)
+        work = sum(a * sum(t[i] * v for i, v in enumerate(virtual)) for a, t in zip(tractions, tangents, strict=True))
         law = sum(law * unknowns.test[name] for law, name in zip(laws, self.tractions, strict=True))
         region = body.boundary(contact.edges)
         form += (-work * weight).Compile() * ng.ds(definedon=region, bonus_intorder=2)

@@ -113,6 +113,13 @@ class UnilateralContact(Term):
         u, motion = fields[DISPLACEMENT], self.motion(fields)
         return tuple(COORDINATES[i] + u[i] - m for i, m in enumerate(motion))
 
+    def virtual(self, unknowns: Unknowns) -> tuple[Any, ...]:
+        """Virtual displacement of the part past the surface: a surface under force moves too, and carries friction."""
+        if not self.force_controlled:
+            return tuple(unknowns.v[i] for i in range(len(self.surface.approach)))
+        travel = unknowns.test[self.travel_name]
+        return tuple(unknowns.v[i] - travel * a for i, a in enumerate(self.surface.approach))
+
     def gap(self, fields: dict[str, Any]) -> Any:
         """Signed distance of the deformed surface from the surface [mm]."""
         return self.surface.gap(*self.place(fields))
