@@ -39,12 +39,16 @@ def explain(scene: Scene) -> dict[str, Any]:
     present |= {f"wear rate at '{c.name}'": _wear_in_words(scene, c) for c in scene.contacts if c.wear_rate.varies}
     if scene.prony is not None:
         present["memory"] = _memory_in_words(scene)
-    left_out = ["viscosity", "stick-slip", "heat", "adhesion", "inertia", "fluid film"]
+    left_out = ["heat", "adhesion", "inertia", "fluid film"]
+    if not stage.remembers:
+        left_out.insert(0, "stick-slip")
+    if scene.prony is None:
+        left_out.insert(0, "viscosity")
     return {
         "scene": scene.name,
         "kind": "axisymmetric" if scene.axisymmetric else "plane strain",
         "effects": present,
-        "left out": [effect for effect in left_out if effect != "viscosity" or scene.prony is None],
+        "left out": left_out,
         "unknowns on the mounting mesh": {
             name: problem.part(name).stop - problem.part(name).start for name in problem.names
         },
@@ -63,12 +67,12 @@ def explain(scene: Scene) -> dict[str, Any]:
 
 def _friction_in_words(scene: Scene, contact: ContactSpec) -> str:
     law = contact.friction_law
-    words = f"full sliding, {law.words}"
+    words = f"{'stick and slip' if scene.may_stick(contact) else 'full sliding'}, {law.words}"
     if not isinstance(law, Constant):
         low, high = friction_range(scene, contact)
         met = f"{low:g}" if low == high else f"{low:g} to {high:g}"
         words += f"; the scene meets mu = {met}" + (" at p = 0" if law.depends_on_pressure else "")
-    return words + ": every stroke is longer than the elastic slip"
+    return f"{words}: {scene.why_it_may_stick(contact)}"
 
 
 def _wear_in_words(scene: Scene, contact: ContactSpec) -> str:

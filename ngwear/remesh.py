@@ -60,7 +60,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
     vectors = carry(old.problem, [p.vector for p in state.phases], stage.problem)
     before, after = old.body.contour, body.contour
     for phase, vector in zip(state.phases, vectors, strict=True):
-        phase.vector, phase.rate = vector, None
+        phase.vector, phase.rate, phase.shares = vector, None, None
         if phase.pressure is not None:
             phase.pressure = _moved_values(before, after, phase.pressure)
     if state.depth_error is not None:

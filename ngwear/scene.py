@@ -28,7 +28,12 @@ class ContactSpec:
     surface : RigidSurface
         In its final place; while mounting it comes in from first touch.
     friction : FrictionLaw or float
-        Coefficient of full sliding friction [-], >= 0.
+        Coefficient of friction [-], >= 0.
+    slides : bool
+        Whether the surface moves along itself in the strokes, as a rod does; a housing stands still.
+    sticks : bool or None
+        Whether friction may stick, with unknowns and a history of its own, or all of the contact slides in every
+        stroke; left to ``Scene.may_stick`` unless given.
     specific_wear_rate : WearRate or float
         Archard's k [mm²/N], >= 0: depth per nominal pressure and sliding distance.
     force : float or None
@@ -41,6 +46,8 @@ class ContactSpec:
     edges: tuple[str, ...]
     surface: RigidSurface
     friction: FrictionLaw | float = 0.0
+    slides: bool = True
+    sticks: bool | None = None
     specific_wear_rate: WearRate | float = 0.0
     force: float | None = None
     refine: bool = False
@@ -53,6 +60,18 @@ class ContactSpec:
         if not isinstance(self.specific_wear_rate, WearRate):
             rate = self.specific_wear_rate
             _require(rate >= 0, f"{place}.specific_wear_rate", rate, "must be at least 0 mm²/N")
+        _require(
+            self.slides or self.sticks is not False,
+            f"{place}.sticks",
+            self.sticks,
+            "a surface that stands still (slides = false) cannot be in full sliding: leave sticks out",
+        )
+        _require(
+            self.slides or not self.wears,
+            f"{place}.specific_wear_rate",
+            self.specific_wear_rate,
+            "a surface that stands still (slides = false) wears nothing: leave its wear rate out",
+        )
         _require(
             self.force is None or self.force > 0, f"{place}.force", self.force, "must be greater than 0 (it presses)"
         )
@@ -383,6 +402,34 @@ class Scene:
         """Arms that need a memory, relative to ``rubber``; None if there are none."""
         folding = self.folding
         return folding.kept if folding is not None and folding.kept.times else None
+
+    def may_stick(self, contact: ContactSpec) -> bool:
+        """Whether a contact's friction is solved as stick and slip; see ``why_it_may_stick``."""
+        return self._sticking(contact)[0]
+
+    def why_it_may_stick(self, contact: ContactSpec) -> str:
+        """Reason in words why a contact's friction is solved as stick and slip, or as full sliding."""
+        return self._sticking(contact)[1]
+
+    def _sticking(self, contact: ContactSpec) -> tuple[bool, str]:
+        """At a reversal a surface first carries the part along, at most by ``2 mu p / G`` of its height; p about G."""
+        if contact.friction_law is None:
+            return False, "no friction"
+        if contact.sticks is not None:
+            return contact.sticks, "as the scene asks"
+        if not contact.slides:
+            return True, "the surface stands still"
+        strokes = self.program.cycle
+        if len({math.copysign(1.0, stroke.direction) for stroke in strokes}) == 1:
+            return False, "the sliding never turns round"
+        mu = max(
+            contact.friction_law.curve(stroke.speed).extremes(0.0, self.program.slid(self.program.strokes))[1]
+            for stroke in strokes
+        )
+        carried = 2 * mu * float(self.contour.points[:, 1].max() - self.contour.points[:, 1].min())
+        shortest = min(stroke.travel for stroke in strokes)
+        told = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
+        return shortest < carried, told
 
     @property
     def followed(self) -> tuple[ContactSpec, ...]:

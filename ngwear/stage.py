@@ -10,7 +10,8 @@ from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
-from ngwear.effects.friction import FullSliding
+from ngwear.effects.friction import Friction, FullSliding
+from ngwear.effects.stick_slip import StickSlip
 from ngwear.effects.stroke_memory import StrokeMemory
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.errors import SceneError
@@ -28,7 +29,7 @@ class Stage:
     Attributes
     ----------
     contacts : dict of str to Contact
-    frictions : dict of str to FullSliding
+    frictions : dict of str to Friction
     fluid : FluidPressure or None
     memory : StrokeMemory or None
     problem : Problem
@@ -47,11 +48,12 @@ class Stage:
             )
             for spec in scene.contacts
         }
-        self.frictions = {
-            spec.name: FullSliding(self.contacts[spec.name], spec.friction_law, speed=scene.program.cycle[0].speed)
-            for spec in scene.contacts
-            if spec.friction_law is not None
-        }
+        self.frictions: dict[str, Friction] = {}
+        for spec in scene.contacts:
+            if spec.friction_law is not None:
+                kind = StickSlip if scene.may_stick(spec) else FullSliding
+                contact, speed = self.contacts[spec.name], scene.program.cycle[0].speed
+                self.frictions[spec.name] = kind(contact, spec.friction_law, speed=speed)
         self.fluid = None
         if scene.fluid is not None:
             self.fluid = FluidPressure(scene.fluid.edges, scene.fluid.inlet, tuple(self.contacts.values()))
@@ -76,11 +78,45 @@ class Stage:
         for spec in self.scene.contacts:
             contact = self.contacts[spec.name]
             loads |= dict.fromkeys(contact.loads, 0.0 if spec.force is None else spec.force)
-        for friction in self.frictions.values():
-            loads |= dict.fromkeys(friction.loads, stroke.direction)
+            if spec.name in self.frictions:
+                friction = self.frictions[spec.name]
+                way = stroke.travel if isinstance(friction, StickSlip) else 1.0
+                loads |= dict.fromkeys(friction.loads, stroke.direction * way if spec.slides else 0.0)
         if self.fluid is not None:
             loads |= dict.fromkeys(self.fluid.loads, stroke.pressure)
         return loads
+
+    @property
+    def remembers(self) -> bool:
+        """Whether friction sticks, so that a stroke depends on where the one before it ended."""
+        return any(isinstance(friction, StickSlip) for friction in self.frictions.values())
+
+    def begin(self, vector: Array) -> None:
+        """Let a stroke begin where another has ended: slip is counted from that state."""
+        state = self.problem.state.vec.FV().NumPy()
+        keep = state.copy()
+        state[:] = vector
+        for friction in self.frictions.values():
+            if isinstance(friction, StickSlip):
+                friction.begin()
+        state[:] = keep
+
+    def shares(self, stroke: Stroke) -> dict[str, Array]:
+        """What each mesh edge slips in the stroke just solved over its travel [-], of each friction that sticks."""
+        sticking = {name: f for name, f in self.frictions.items() if isinstance(f, StickSlip)}
+        return {name: friction.slid() / stroke.travel for name, friction in sticking.items()}
+
+    def set_shares(self, shares: dict[str, Array] | None) -> None:
+        """Let wear in the next solve follow these shares; everything slips where none are known."""
+        for name, contact in self.contacts.items():
+            if contact.share is not None:
+                contact.set_edge_values(contact.share, 1.0 if shares is None else shares[name])
+
+    def slipping(self, contact: str, stroke: Stroke) -> Array | float:
+        """What the contact's nodes slip in the stroke just solved over its travel [-]."""
+        if self.contacts[contact].share is None:
+            return 1.0
+        return self.contacts[contact].edges_to_nodes(self.shares(stroke)[contact])
 
     def stretched_guess(self) -> bool:
         """Stretch an axisymmetric part, at constant volume, until it clears its shafts; False if none overlaps it.
@@ -113,8 +149,16 @@ class Stage:
             else:
                 loads |= dict.fromkeys(contact.loads, 0.0)
                 self.problem.fields[contact.travel_name].vec[:] = self._travel_to_touch(spec)
+        return self.mounted_loads() | loads
+
+    def mounted_loads(self) -> dict[str, float]:
+        """Loads of the mounted part before the first stroke: no fluid pressure, and nothing has slid yet."""
+        loads = self.stroke_loads(self.scene.program.cycle[0])
         for friction in self.frictions.values():
-            loads |= dict.fromkeys(friction.loads, self.scene.program.cycle[0].direction)
+            if isinstance(friction, StickSlip):
+                loads |= dict.fromkeys(friction.loads, 0.0)
+        if self.fluid is not None:
+            loads |= dict.fromkeys(self.fluid.loads, 0.0)
         return loads
 
     def _clearance(self, spec: ContactSpec) -> tuple[float, int]:

@@ -31,11 +31,14 @@ class Phase:
         Its change per cycle, on the same mesh.
     pressure : array, shape (contacts, n)
         Highest wear rate times nominal pressure of each contact at the contour points [-], of the last time.
+    shares : dict of str to array, or None
+        What each mesh edge has slipped over the travel [-], where friction may stick, of the last time on this mesh.
     """
 
     vector: Array
     rate: Array | None = None
     pressure: Array | None = None
+    shares: dict[str, Array] | None = None
 
 
 @dataclass

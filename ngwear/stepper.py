@@ -85,6 +85,7 @@ class Stepper:
         phases = len(scene.program.cycle)
         state.work.add(self._mount(stage))
         for i, stroke in enumerate(scene.program.cycle):
+            stage.begin(problem.state.vec.FV().NumPy())
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
@@ -111,11 +112,11 @@ class Stepper:
         background = Background(Body(body.contour, field))
         state.stage = stage = Stage(scene, body, background)
         stage.problem.state.vec.FV().NumPy()[:] = phase.vector
-        loads = stage.stroke_loads(first)
-        stage.problem.set_loads(loads)
+        stage.begin(phase.vector)
+        stage.problem.set_loads(stage.stroke_loads(first))
         for term in stage.problem.terms:
             term.refresh()
-        state.work.add(advance(stage.problem, _without_fluid(loads)))
+        state.work.add(advance(stage.problem, stage.mounted_loads()))
         durations = [stroke.duration for stroke in scene.program.cycle]
         mounted = stage.memory.stress()
         state.memory = CycleMemory(background, scene.arms, durations, mounted=mounted, rest=scene.program.rest)
@@ -123,7 +124,7 @@ class Stepper:
     def _mount(self, stage: Stage) -> Work:
         """Bring the surfaces to their places, without fluid pressure."""
         problem = stage.problem
-        loads = _without_fluid(stage.stroke_loads(self.scene.program.cycle[0]))
+        loads = stage.mounted_loads()
         options = StepOptions(first=1 / 64)
 
         def report(fraction: float, _: Any) -> None:
@@ -278,6 +279,7 @@ class Stepper:
         stage, phase = state.stage, state.phases[index]
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
+        stage.begin(state.phases[index - 1].vector)
         problem.set_loads(stage.stroke_loads(stroke))
         implicit = self.scene.wear.scheme == "implicit"
         for spec in self.scene.contacts:
@@ -285,6 +287,7 @@ class Stepper:
             stage.contacts[spec.name].compliance.Set(worn if implicit else 0.0)
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
+        stage.set_shares(phase.shares)
         if state.memory is not None:
             state.memory.enter(stage.memory, plan, index)
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
@@ -300,7 +303,8 @@ class Stepper:
             self._approach(state, index, stroke, work)
         state.work.add(work)
         rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
-        state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None)
+        shares = stage.shares(stroke)
+        state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None, shares=shares)
         return work.iterations
 
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
@@ -327,14 +331,15 @@ class Stepper:
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
         vector[:] = state.phases[index].vector
-        try:
-            work.add(relax(problem, StepOptions(first=0.25)))
-            return
-        except ConvergenceError as error:
-            log.info("%s: trying from the stroke before", error)
-        before = (index - 1) % len(cycle)
-        vector[:] = state.phases[before].vector
-        problem.set_loads(stage.stroke_loads(cycle[before]))
+        if not stage.remembers:
+            try:
+                work.add(relax(problem, StepOptions(first=0.25)))
+                return
+            except ConvergenceError as error:
+                log.info("%s: trying from the stroke before", error)
+        vector[:] = state.phases[index - 1].vector
+        problem.set_loads(stage.stroke_loads(cycle[index - 1]))
+        stage.begin(vector)
         try:
             work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.25)))
         except ConvergenceError as error:
@@ -344,7 +349,7 @@ class Stepper:
 
     def _wear(self, state: State, index: int, sliding: Strokes) -> bool:
         """Take the stroke's worn area off the outline; return whether its error is known."""
-        stage, contour = state.stage, state.contour
+        stage, contour, stroke = state.stage, state.contour, self.scene.program.cycle[index]
         share = np.zeros(len(contour))
         half = np.zeros(len(contour))
         pressure = np.zeros((len(self.scene.contacts), len(contour)))
@@ -358,8 +363,9 @@ class Stepper:
             contact = stage.contacts[spec.name]
             profile = contact.profile()
             ratio = contact.at_nodes(stage.elasticity.volume_ratio())
-            share += worn_share(contour, profile, sliding.worn_depth(spec.wear_rate) * profile.load / ratio)
-            here[:] = at_points(contour, profile, spec.wear_rate.highest * profile.load / profile.weight)
+            load = stage.slipping(spec.name, stroke) * profile.load
+            share += worn_share(contour, profile, sliding.worn_depth(spec.wear_rate) * load / ratio)
+            here[:] = at_points(contour, profile, spec.wear_rate.highest * load / profile.weight)
             half += 0.5 * sliding.worn_distance(spec.wear_rate) * (before - here)
         if known:
             width = 0.5 * (contour.lengths + np.roll(contour.lengths, 1))
@@ -401,8 +407,3 @@ class Stepper:
             )
         log.info("%s: a new mesh is needed", why)
         remesh(state, worn)
-
-
-def _without_fluid(loads: dict[str, float]) -> dict[str, float]:
-    """Loads with the sealed pressure taken off."""
-    return {name: 0.0 if "fluid" in name else value for name, value in loads.items()}

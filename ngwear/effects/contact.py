@@ -119,9 +119,27 @@ class Contact(UnilateralContact):
         vector[:] = keep
         return out
 
+    def sample_middles(self, field: ng.CoefficientFunction) -> Array:
+        """Mean at both ends of each mesh edge, in the order of the outline; shape (m,)."""
+        return self._sample(field).mean(axis=1)
+
+    def edge_values(self, field: ng.GridFunction) -> Array:
+        """Values of a field that is constant on each mesh edge, in the order of the outline; shape (m,)."""
+        return self._sample(field)[:, 0]
+
+    def set_edge_values(self, field: ng.GridFunction, values: Array) -> None:
+        """The other way round: give such a field its values."""
+        elements = self._body.outline.element[self.positions]
+        dofs = [field.space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in elements]
+        field.vec.FV().NumPy()[dofs] = values
+
     def at_nodes(self, field: ng.CoefficientFunction) -> Array:
         """Values of a field at the nodes of ``profile``, averaged over the edges that meet there."""
         return ContactProfile.average(self._body, self.positions, self._sample(field))
+
+    def edges_to_nodes(self, values: Array) -> Array:
+        """Values of the mesh edges at the nodes of ``profile``: means of the edges that meet there."""
+        return ContactProfile.average(self._body, self.positions, np.column_stack([values, values]))
 
     def touching(self) -> NDArray[np.bool_]:
         """Which of the mesh edges in ``positions`` carry pressure."""

@@ -65,6 +65,10 @@ class PatchContact(UnilateralContact):
         """Values at three corners and the centre of each face, shape (n, 4)."""
         return np.broadcast_to(np.asarray(field(self._points)).reshape(-1), (len(self._points),)).reshape(-1, 4)
 
+    def sample_middles(self, field: ng.CoefficientFunction) -> Array:
+        """Values at the centre of each face, shape (n,)."""
+        return self._sample(field)[:, 3]
+
     def faces(self) -> Faces:
         """Pressures and places of the present state."""
         u = self._state[DISPLACEMENT]

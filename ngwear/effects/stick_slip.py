@@ -40,6 +40,9 @@ class StickSlip(Friction):
         self.loads = {f"{contact.name} travel [mm]": self.travel}
         self._motion_before = [ng.Parameter(0.0) for _ in contact.surface.approach]
         self.tractions = tuple(f"{contact.name} traction {k + 1}" for k in range(len(self._motion_before) - 1))
+        contact.slips_in_part = True
+        self._spent: float = 0.0
+        self._slid: Array | float = 0.0
 
     def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
         region = body.boundary(self.contact.edges)
@@ -73,8 +76,15 @@ class StickSlip(Friction):
         slips[0] = slips[0] - (self.travel - self._travel_before)
         return slips
 
+    def begin(self) -> None:
+        """Let a stroke begin in the present state: slip, way and heat are counted from here."""
+        self.travel.Set(0.0)
+        self.commit(None)
+        self._spent, self._slid = 0.0, 0.0
+
     def commit(self, strain: Array | None) -> None:
-        """Let slip be counted from the present state."""
+        """Let the next step's slip be counted from the present state."""
+        self._spent, self._slid = self.heat(0.0), self.slid()
         state, contact = self._unknowns.state, self.contact
         self._before.vec.data = state[DISPLACEMENT].vec
         self._travel_before.Set(self.travel.Get())
@@ -90,10 +100,16 @@ class StickSlip(Friction):
         )
 
     def heat(self, way: float) -> float:
-        """``- int T . s dA`` of the step's slip s, whatever the way."""
+        """``- int T . s dA`` of the slip s since the stroke began, whatever the way."""
         state = self._unknowns.state
         slips = self._slips(state, self.contact.surface.tangents(*self.contact.place(state)))
-        return -self._integral(sum(state[n] * s for n, s in zip(self.tractions, slips, strict=True)))
+        return self._spent - self._integral(sum(state[n] * s for n, s in zip(self.tractions, slips, strict=True)))
+
+    def slid(self) -> Array:
+        """Way that each surface element's middle has slipped since the stroke began [mm], in the contact's order."""
+        state = self._unknowns.state
+        slips = self._slips(state, self.contact.surface.tangents(*self.contact.place(state)))
+        return self._slid + self.contact.sample_middles(ng.sqrt(sum(s * s for s in slips)))
 
 
 def _laws(tractions: list, slips: list, *, bound: ng.CoefficientFunction, give: ng.CoefficientFunction) -> list:

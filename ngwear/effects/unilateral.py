@@ -48,6 +48,11 @@ class UnilateralContact(Term):
 
     Attributes
     ----------
+    compliance : ng.Parameter
+        kappa [mm/MPa].
+    slips_in_part : bool
+        Set by a friction that sticks: kappa is then times ``share``, constant on each surface element and 1 at first,
+        what slips there over the way that the surface slides.
     softness : ng.Parameter
         Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
         it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
@@ -68,6 +73,8 @@ class UnilateralContact(Term):
         self.modulus = modulus
         self.softness = ng.Parameter(1.0)
         self.compliance = ng.Parameter(0.0)
+        self.slips_in_part = False
+        self.share: ng.GridFunction | None = None
         self.load = ng.Parameter(0.0)
         self._extent = ng.Parameter(1.0)  # of the whole surface as it is meshed and worn [mm, or mm²]
         kind = "force [N]" if force_controlled else "approach [mm]"
@@ -91,6 +98,10 @@ class UnilateralContact(Term):
     @abc.abstractmethod
     def lengths(self, body: Meshed) -> ng.GridFunction:
         """Length of each surface element as it was made [mm]; constant on it, so that P adds up to what g asks."""
+
+    @abc.abstractmethod
+    def sample_middles(self, field: ng.CoefficientFunction) -> Array:
+        """Values of a field in the middle of each surface element."""
 
     def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
         spaces = {self.pressure_name: self.pressure_space(body)}
@@ -131,10 +142,15 @@ class UnilateralContact(Term):
         self._start = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         stretch = kinematics.area_stretch(self._start, ng.Grad(self._start))
         give = self.lengths(body) / self.modulus
-        self._augmentation = c = 1 / (0.5 * self.softness * give + self.compliance)
+        kappa = self.compliance
+        if self.slips_in_part:
+            self.share = ng.GridFunction(ng.SurfaceL2(body.mesh, order=0))
+            self.share.vec[:] = 1.0
+            kappa = kappa * self.share
+        self._augmentation = c = 1 / (0.5 * self.softness * give + kappa)
         p = unknowns.trial[self.pressure_name]
         pushed = p - c * self.gap(unknowns.trial)
-        closure = 1 + c * (1e-6 * give + self.compliance / stretch)
+        closure = 1 + c * (1e-6 * give + kappa / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight
         form += ng.Variation(energy.Compile() * ng.ds(definedon=self._region, bonus_intorder=2))

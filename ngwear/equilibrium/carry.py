@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.contact import Contact
 from ngwear.effects.contact_patch import PatchContact
+from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
@@ -24,9 +25,9 @@ LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refil
 def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     """Interpolate state vectors of ``old`` to the mesh of ``new``; a first guess, not an equilibrium.
 
-    Displacement and volumetric stress are taken at the new nodes (the nearest old point for a node just
-    outside), contact pressures from the two nearest old nodes of the outline, travels of rigid bodies as they
-    are. Both problems must have the same unknowns.
+    Displacement and volumetric stress are taken at the new nodes (the nearest old point for a node just outside),
+    contact pressures from the two nearest old nodes of the outline, tractions from the nearest edge, travels of rigid
+    bodies as they are. Both problems must have the same unknowns.
     """
     search = PointSearch(old.body.mesh, _node_places(new), old.body.deformation)
     near = {after.name: _neighbours(before, after) for before, after in _contact_pairs(old, new)}
@@ -46,6 +47,11 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
             if after.force_controlled:
                 target[new.part(after.travel_name)] = state[old.part(before.travel_name)]
         new.state.vec.data = out
+        for before, after in _sticking_pairs(old, new):
+            *_, twin = near[after.contact.name]
+            for name in after.tractions:
+                values = before.contact.edge_values(old.fields[name])[twin]
+                after.contact.set_edge_values(new.fields[name], values)
         _unfold(new)
         carried.append(new.state.vec.FV().NumPy().copy())
     old.state.vec.FV().NumPy()[:] = keep
@@ -106,6 +112,11 @@ def _fill_harmonically(u: ng.GridFunction, marked: NDArray[np.bool_]) -> None:
 def _contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:
     before = {t.name: t for t in old.terms if isinstance(t, Contact)}
     return [(before[t.name], t) for t in new.terms if isinstance(t, Contact)]
+
+
+def _sticking_pairs(old: Problem, new: Problem) -> list[tuple[StickSlip, StickSlip]]:
+    before = {t.contact.name: t for t in old.terms if isinstance(t, StickSlip)}
+    return [(before[t.contact.name], t) for t in new.terms if isinstance(t, StickSlip)]
 
 
 def _node_places(problem: Problem) -> Array:

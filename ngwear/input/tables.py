@@ -35,7 +35,7 @@ def typed(place: str, value: Any, kind: str) -> Any:
         if not isinstance(value, list):
             raise SceneError(place, value, "must be a list of numbers, such as [3.0, 10.0]")
         return tuple(typed(f"{place}[{i}]", v, "float") for i, v in enumerate(value))
-    if kind == "bool" and not isinstance(value, bool):
+    if kind.startswith("bool") and not isinstance(value, bool):
         raise SceneError(place, value, "must be true or false")
     if kind == "str" and not isinstance(value, str):
         raise SceneError(place, value, "must be a text in quotes")
