@@ -37,7 +37,7 @@ def explain(scene: Scene) -> dict[str, Any]:
     if scene.fluid is not None:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
     if rate > 0:
-        present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}'"
+        present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
     if scene.prony is not None:
         present["memory"] = _memory_in_words(scene)
     left_out = ["viscosity", "stick-slip", "heat", "adhesion", "inertia", "fluid film"]

@@ -174,8 +174,8 @@ class Accuracy:
     folding_error : float
         Largest relative error of stress that arms of the memory may cause by being folded away [-].
     pointwise : float
-        Volumetric stiffness kept at each point over the shear modulus [-], >= 0; the energy is the same for all. Pressures
-        of several G ask for about 10, friction of about G for 0 (``effects.elasticity``).
+        Volumetric stiffness kept at each point over the shear modulus [-], >= 0; the energy is the same for all.
+        Pressures of several G ask for about 10, friction of about G for 0 (``effects.elasticity``).
     """
 
     patch: float = 0.01

@@ -16,8 +16,8 @@ POINTWISE = 10.0  # Ks / G
 class Elasticity(VolumeTerm):
     """Energy ``psi_iso + Ks/2 (J - 1)^2 + p (J - 1) - p^2 / (2 (K - Ks))`` over the section.
 
-    The unknown p [MPa] carries all but a small part Ks of the volumetric stiffness, ``pointwise`` times G. With displacements
-    of order 2 and p of order 1 (Taylor-Hood) no locking appears for any K/G (perturbed Lagrangian of
+    The unknown p [MPa] carries all but a small part Ks of the volumetric stiffness, ``pointwise`` times G. With
+    displacements of order 2 and p of order 1 (Taylor-Hood) no locking appears for any K/G (perturbed Lagrangian of
     Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51 (1985) 177).
 
     Ks is there for stability: without it such pairs, volume kept in the mean only, have spurious

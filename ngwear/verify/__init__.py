@@ -30,6 +30,8 @@ CASES: dict[str, str] = {
     "block_on_ring": "ngwear.verify.block_on_ring",
     "worn_cylinder": "ngwear.verify.worn_cylinder",
     "stability_pair": "ngwear.verify.stability_pair",
+    "sliding_roller": "ngwear.verify.sliding_roller",
+    "shaft_on_plate": "ngwear.verify.shaft_on_plate",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
     "rod_seal_filled": "ngwear.verify.rod_seal_filled",
