@@ -35,7 +35,7 @@ def explain(scene: Scene) -> dict[str, Any]:
     if scene.fluid is not None:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
     if rate > 0:
-        present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}'"
+        present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
     present |= {f"wear rate at '{c.name}'": _wear_in_words(scene, c) for c in scene.contacts if c.wear_rate.varies}
     if scene.prony is not None:
         present["memory"] = _memory_in_words(scene)

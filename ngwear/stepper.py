@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ngwear.cycle_memory import CycleMemory
 from ngwear.drift import steady_cycles
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
-from ngwear.errors import ConvergenceError, GeometryError, MeshError
+from ngwear.errors import ConvergenceError, GeometryError, MeshError, SceneError
 from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
@@ -75,6 +75,8 @@ class Stepper:
         ------
         ConvergenceError
             If the part cannot be mounted.
+        SceneError
+            If a surface that shall wear the part does not touch it in any stroke.
         """
         scene = self.scene
         contour = smoothed(scene.contour, self.worn_edges, 1.3 * scene.accuracy.patch)
@@ -89,6 +91,7 @@ class Stepper:
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
+        self._refuse_idle_contacts(state)
         ahead = still_to_slide(state)
         while outgrown(state.stage, [p.vector for p in state.phases], sliding=ahead) and state.ledger.remeshes < 4:
             remesh(state)
@@ -102,6 +105,19 @@ class Stepper:
             self._remember(state)
         self.on_mount(1.0)
         return state
+
+    def _refuse_idle_contacts(self, state: State) -> None:
+        """A surface that never touches the part would wear nothing, without a word."""
+        problem = state.stage.problem
+        for spec in self.scene.contacts:
+            contact = state.stage.contacts[spec.name]
+            pressed = any(p.vector[problem.part(contact.pressure_name)].max() > 0 for p in state.phases)
+            if spec.specific_wear_rate > 0 and not pressed:
+                raise SceneError(
+                    f"contact '{spec.name}'.surface",
+                    spec.surface,
+                    "lifts off: it touches its edges in no stroke and wears nothing; move it closer or give a force",
+                )
 
     def _remember(self, state: State) -> None:
         """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
@@ -138,7 +154,14 @@ class Stepper:
                 log.info("%s: mounting by interference instead", error)
                 problem.state.vec[:] = 0.0
         problem.set_loads(stage.first_touch())
-        return advance(problem, loads, options, on_step=report)
+        try:
+            return advance(problem, loads, options, on_step=report)
+        except ConvergenceError as error:
+            found = str(error).splitlines()[0]
+            raise ConvergenceError(
+                f"no equilibrium found that carries the load; lower force, interference or friction: {found}",
+                error.report,
+            ) from None
 
     def finished(self, state: State) -> bool:
         """Whether all strokes of the program are done."""

@@ -37,6 +37,8 @@ def plot(folder: Path | str) -> list[Path]:
     figures = {"mesh": mesh_figure, "profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
     if has_laws(result):
         figures["laws"] = law_figure
+    if is_mirrored(result.outline):
+        figures["asymmetry"] = asymmetry_figure
     written = []
     with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         for name, draw in figures.items():
@@ -145,7 +147,7 @@ def profile_figure(result: ResultFile) -> Figure:
         panel.set_ylabel(f"{kind}: pressure [MPa]")
         panel.set_ylim(bottom=0)
     axes[-1].set_xlabel("x [mm]")
-    axes[0].legend(loc="upper right")
+    axes[0].legend()
     return figure
 
 
@@ -216,4 +218,55 @@ def history_figure(result: ResultFile) -> Figure:
         panel.legend()
     axes[0].set_title(result.scene)
     axes[2].set_xlabel("strokes")
+    return figure
+
+
+def is_mirrored(outline: Array) -> bool:
+    """Whether an outline, not yet worn, is its own mirror image left to right."""
+    from shapely import Polygon
+
+    middle = 0.5 * (outline[:, 0].min() + outline[:, 0].max())
+    shape, mirrored = Polygon(outline), Polygon(outline * (-1, 1) + (2 * middle, 0))
+    return shape.symmetric_difference(mirrored).area < 1e-6 * shape.area
+
+
+def worn_edge(snapshot: Snapshot) -> Array:
+    """Points of the outline along the first contact's edges, sorted by x [mm], shape (k, 2)."""
+    touching = next(iter(snapshot.profiles.values()))["reference [mm]"]
+    order = np.argsort(touching[:, 0])
+    first, middle, last = (
+        int(np.linalg.norm(snapshot.outline - touching[i], axis=1).argmin())
+        for i in (order[0], order[len(order) // 2], order[-1])
+    )
+    n = len(snapshot.outline)
+    if (middle - first) % n > (last - first) % n:
+        first, last = last, first
+    edge = snapshot.outline[np.arange(first, first + (last - first) % n + 1) % n]
+    return edge[np.argsort(edge[:, 0])]
+
+
+def asymmetry_figure(result: ResultFile) -> Figure:
+    """The worn edge at the end, its mirror image, and how far they are apart."""
+    worn, unworn = worn_edge(result.snapshots[-1]), worn_edge(result.snapshots[0])
+    middle = 0.5 * (result.outline[:, 0].min() + result.outline[:, 0].max())
+    x = np.linspace(worn[0, 0], worn[-1, 0], 4001)
+    height, before = np.interp(x, *worn.T), np.interp(x, *unworn.T)
+    mirrored = np.interp(2 * middle - x, *worn.T)
+    figure, (upper, lower) = new_figure(2, (2, 1), size=(8, 6.5))
+    upper.plot(x, before, color="0.5", lw=1.0, label="unworn")
+    upper.plot(x, height, color=COLOURS[0], lw=1.4, label=f"worn, after {result.snapshots[-1].stroke} strokes")
+    upper.plot(x, mirrored, color=COLOURS[1], lw=1.0, ls="--", label="its mirror image")
+    deepest = int(np.argmax(np.abs(before - height)))
+    upper.plot(x[deepest], height[deepest], "o", color=COLOURS[0], ms=4, label=f"deepest, at x = {x[deepest]:.2f} mm")
+    lower.plot(x, 1e3 * (height - mirrored), color=COLOURS[1], lw=1.2)
+    for axes in (upper, lower):
+        axes.axvline(middle, color="k", lw=0.8, ls="-.")
+    reach = np.abs(x - middle)[np.abs(before - height) > 1e-3 * np.abs(before - height).max()]
+    half = 1.15 * reach.max(initial=1e-3)
+    upper.set_xlim(middle - half, middle + half)
+    upper.set_ylabel("outline, unloaded: y [mm]")
+    upper.set_title(f"{result.scene}: worn edge against its mirror image")
+    upper.legend(loc="center")
+    lower.set_ylabel("worn less mirrored [µm]")
+    lower.set_xlabel("x [mm]; dash-dotted: middle of the unworn part")
     return figure

@@ -33,6 +33,8 @@ CASES: dict[str, str] = {
     "measured_profile": "ngwear.verify.measured_profile",
     "stability_pair": "ngwear.verify.stability_pair",
     "lubrication": "ngwear.verify.lubrication",
+    "sliding_roller": "ngwear.verify.sliding_roller",
+    "shaft_on_plate": "ngwear.verify.shaft_on_plate",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
     "rod_seal_filled": "ngwear.verify.rod_seal_filled",

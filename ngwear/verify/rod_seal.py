@@ -31,9 +31,9 @@ from ngwear.verify.base import Check, Stopwatch
 CASE = "rod_seal"
 
 
-def shipped_scene(name: str = "scene.toml") -> Scene:
-    """Read a scene of geometries/rod_seal of this checkout."""
-    path = Path(__file__).parents[2] / "geometries" / "rod_seal" / name
+def shipped_scene(name: str = "scene.toml", folder: str = "rod_seal") -> Scene:
+    """Read a scene of this checkout's ``geometries``."""
+    path = Path(__file__).parents[2] / "geometries" / folder / name
     if not path.is_file():
         raise SceneError("verify", str(path), "the shipped scenes come with the repository: run this in a checkout")
     return read_scene(path)

@@ -134,7 +134,7 @@ def test_plot_draws_again(finished, capsys):
         picture.unlink()
     assert main(["plot", str(finished)]) == OK
     drawn = capsys.readouterr().out.split()
-    assert len(drawn) == 4
+    assert len(drawn) == 5
     for path in drawn:
         with open(path, "rb") as file:
             assert file.read(8) == b"\x89PNG\r\n\x1a\n"

@@ -12,7 +12,8 @@ import pytest
 
 from ngwear.errors import ResultError
 from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
-from ngwear.plots.wear import plot
+from ngwear.plots.schemes import draw_schemes
+from ngwear.plots.wear import is_mirrored, plot, worn_edge
 from ngwear.result_file import read_result
 from ngwear.results import Folder, Recorder, depths, fingerprint
 from ngwear.scenefile import read_scene
@@ -206,3 +207,32 @@ def test_folder_without_a_run_has_nothing_to_go_on_with(tmp_path, sheet):
 
 def test_recorder_of_an_empty_run_is_plain_data(sheet):
     assert pickle.loads(pickle.dumps(Recorder(sheet))).rows == []
+
+
+def test_outlines_that_are_their_own_mirror_image(rectangle, seal):
+    points = rectangle(4.0, 2.0, 4, 2).points
+    assert is_mirrored(points + np.array([7.0, -3.0]))
+    points[3, 0] += 0.1
+    assert is_mirrored(points), "a point more to the right on the same straight edge"
+    points[3, 1] += 0.1
+    assert not is_mirrored(points)
+    assert not is_mirrored(seal.contour.points)
+
+
+def test_worn_edge_is_the_whole_top_from_left_to_right(finished):
+    result = read_result(finished)
+    unworn, worn = (worn_edge(result.snapshots[i]) for i in (0, -1))
+    assert (unworn[:, 1] == 2.0).all()
+    for edge in (unworn, worn):
+        assert edge[[0, -1]] == pytest.approx(np.array([[0.0, 2.0], [4.0, 2.0]]))
+        assert (np.diff(edge[:, 0]) > 0).all()
+    lost = 4.0 * 2.0 - np.trapezoid(worn[:, 1], worn[:, 0])
+    assert lost == pytest.approx(result.series["area removed from the outline [mm^2]"][-1], rel=1e-9)
+
+
+def test_schemes_side_by_side(finished, tmp_path):
+    file = tmp_path / "schemes.png"
+    draw_schemes({"explicit": {"0.1 mm": finished}, "implicit": {"0.1 mm": finished}}, 4, file)
+    assert file.read_bytes().startswith(b"\x89PNG")
+    with pytest.raises(ResultError, match=r"cannot be written"):
+        draw_schemes({"implicit": {"0.1 mm": finished}}, 4, tmp_path / "nowhere" / "schemes.png")

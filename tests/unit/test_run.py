@@ -15,7 +15,8 @@ from dataclasses import replace
 
 import pytest
 
-from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError
+from ngwear.cli import main
+from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError, SceneError
 from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.results import Folder
 from ngwear.run import COMPLETED, GAVE_UP, run
@@ -398,6 +399,7 @@ def test_force_far_too_high_gives_up_while_mounting_and_says_so(tmp_path, write_
     assert result.state is None
     assert re.search(r"mount|after stroke 0\b", result.message), result.message
     assert "roller force" in result.message
+    assert "no equilibrium found that carries the load; lower force" in result.message
     summary = summary_of(tmp_path / "out")
     assert summary["status"] == GAVE_UP
     assert summary["strokes"] == 0
@@ -489,3 +491,53 @@ def test_vtk_on_request(tmp_path, sheet):
     content = file.read_bytes()
     assert b"displacement" in content
     assert b"volumetric_stress" in content
+
+
+def worn_deep(folder, write_sheet, remesh):
+    """The small scene worn to half its thickness, with the nodes that follow it."""
+    changes = [("1.0e-3", "3.2e-2"), ("coarse = 0.5", "coarse = 0.3"), ("patch = 0.1", "patch = 0.15")]
+    choice = ('step = "each"', f'step = "each"\nremesh = "{remesh}"')
+    return write_sheet(folder, ("strokes = 4", "strokes = 12"), *changes, choice)
+
+
+def test_nodes_move_to_their_limit_and_hand_over_to_a_new_mesh(tmp_path, write_sheet):
+    meshes, depths = {}, {}
+    for remesh in ("due", "limit"):
+        result = run(read_scene(worn_deep(tmp_path, write_sheet, remesh)), figures=False)
+        assert result.status == COMPLETED
+        assert result.summary["error estimates"]["area against the law [-]"] < 1e-6
+        first, last = result.recorder.rows[0], result.recorder.rows[-1]
+        meshes[remesh] = last["remeshes [-]"] - first["remeshes [-]"]
+        depths[remesh] = result.summary["maximum depth [mm]"]
+    assert meshes["limit"] == 1
+    assert meshes["due"] > 1
+    assert depths["limit"] == pytest.approx(depths["due"], rel=0.01)
+
+
+def test_used_up_elements_end_the_run_if_no_new_mesh_is_wanted(tmp_path, write_sheet, capsys):
+    out = tmp_path / "out"
+    assert main(["run", str(worn_deep(tmp_path, write_sheet, "never")), "--out", str(out), "--quiet"]) == 3
+    summary = summary_of(out)
+    assert summary["status"] == GAVE_UP
+    assert 0 < summary["strokes"] < 12
+    found = re.search(r"the top layer of elements is used up at a depth of ([\d.]+) mm", summary["message"])
+    assert float(found[1]) == pytest.approx(summary["maximum depth [mm]"], rel=0.02)
+    assert "wear.remesh = 'limit' or 'due'" in summary["message"]
+    assert "top layer" in capsys.readouterr().err
+    assert {p.name for p in out.iterdir()} >= FILES | {"history.png"}
+    assert int(rows_of(out)[-1]["stroke [-]"]) == summary["strokes"]
+
+
+def test_a_mesh_that_stays_is_fine_wherever_the_contact_may_come(tmp_path, write_sheet):
+    """Half width of the contact at the end: the outline's elements there are as short as in the first contact."""
+    scene = read_scene(worn_deep(tmp_path, write_sheet, "never"))
+    state = Stepper(scene).start()
+    lengths = state.contour.lengths[state.contour.on(("top",))]
+    points = state.contour.points[state.contour.on(("top",))]
+    assert lengths[abs(points[:, 0] - 2.0) < 1.5].max() < 1.5 * scene.accuracy.patch
+
+
+def test_surface_that_never_touches_is_refused(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, ("force = 0.5\n", ""), ("3.99", "4.1")))
+    with pytest.raises(SceneError, match=r"'roller'.*lifts off: it touches its edges in no stroke.*move it closer"):
+        run(scene, figures=False)
