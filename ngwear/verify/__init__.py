@@ -30,6 +30,7 @@ CASES: dict[str, str] = {
     "ring": "ngwear.verify.ring",
     "block_on_ring": "ngwear.verify.block_on_ring",
     "worn_cylinder": "ngwear.verify.worn_cylinder",
+    "fretting": "ngwear.verify.fretting",
     "stability_pair": "ngwear.verify.stability_pair",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
