@@ -1,4 +1,4 @@
-"""The command line: run, verify, explain, plot."""
+"""The command line: run, verify, explain, plot, compare."""
 
 from __future__ import annotations
 
@@ -37,6 +37,19 @@ def _parser() -> argparse.ArgumentParser:
     plot.add_argument("folder", type=Path, metavar="DIR")
     plot.add_argument("--against", type=Path, metavar="DIR", help="draw it beside another run of the same outline")
     plot.set_defaults(do=_plot)
+    compare = commands.add_parser("compare", help="lay a measured profile over a run's worn edge; fit the wear rate")
+    compare.add_argument("folder", type=Path, metavar="DIR")
+    compare.add_argument("profile", type=Path, metavar="PROFILE.csv", help="columns 'x [mm]' and 'z [mm]', or [µm]")
+    compare.add_argument(
+        "--edges", nargs="+", default=(), metavar="NAME", help="measured edges; default: all that wear"
+    )
+    slid = compare.add_mutually_exclusive_group()
+    slid.add_argument("--strokes", type=float, metavar="N", help="strokes of the measured part; default: the run's")
+    slid.add_argument("--distance", type=float, metavar="MM", help="sliding distance of the measured part")
+    compare.add_argument("--upside-down", action="store_true", help="the profile's heights point into the material")
+    compare.add_argument("--mirrored", action="store_true", help="the profile runs the other way")
+    compare.add_argument("--json", action="store_true")
+    compare.set_defaults(do=_compare)
     return parser
 
 
@@ -133,5 +146,32 @@ def _plot(options: argparse.Namespace) -> int:
 
     draw = plot_pin if is_pin_run(options.folder) else plot
     for path in [compare(options.folder, options.against)] if options.against else draw(options.folder):
+        print(path)
+    return OK
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from ngwear.plots.measured import draw_measured
+    from ngwear.profiles.comparison import compare_profile
+
+    comparison = compare_profile(
+        options.folder,
+        options.profile,
+        edges=options.edges,
+        strokes=options.strokes,
+        distance=options.distance,
+        upside_down=options.upside_down,
+        mirrored=options.mirrored,
+    )
+    files = comparison.write(options.folder), draw_measured(comparison, options.folder)
+    numbers = comparison.as_dict()
+    if options.json:
+        print(json.dumps(numbers, indent=2))
+        return OK
+    notes = numbers.pop("notes")
+    _print_table(numbers)
+    for note in notes:
+        print(f"note: {note}")
+    for path in files:
         print(path)
     return OK

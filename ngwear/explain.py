@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ngwear.scene import Scene
+from ngwear.drift import friction_range
+from ngwear.laws import Constant
+from ngwear.scene import ContactSpec, Scene
 from ngwear.wear.archard import critical_distance
 
 
@@ -24,20 +26,17 @@ def explain(scene: Scene) -> dict[str, Any]:
 
     stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
     problem, material = stage.problem, scene.material
-    rate = max((c.specific_wear_rate for c in scene.contacts), default=0.0)
+    rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
     critical = critical_distance(scene.accuracy.patch, rate, material.plane_strain_modulus)
     travel = max(s.travel for s in scene.program.cycle)
     present = {"hyperelasticity": type(material).__name__}
     present |= {f"contact '{c.name}'": f"edges {', '.join(c.edges)}" for c in scene.contacts}
-    present |= {
-        f"friction at '{c.name}'": f"full sliding, mu = {c.friction:g}: every stroke is longer than the elastic slip"
-        for c in scene.contacts
-        if c.friction > 0
-    }
+    present |= {f"friction at '{c.name}'": _friction_in_words(scene, c) for c in scene.contacts if c.friction_law}
     if scene.fluid is not None:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
     if rate > 0:
         present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}'"
+    present |= {f"wear rate at '{c.name}'": _wear_in_words(scene, c) for c in scene.contacts if c.wear_rate.varies}
     if scene.prony is not None:
         present["memory"] = _memory_in_words(scene)
     left_out = ["viscosity", "stick-slip", "heat", "adhesion", "inertia", "fluid film"]
@@ -60,6 +59,22 @@ def explain(scene: Scene) -> dict[str, Any]:
         },
         **({"arms of the memory": _arms(scene)} if scene.prony is not None else {}),
     }
+
+
+def _friction_in_words(scene: Scene, contact: ContactSpec) -> str:
+    law = contact.friction_law
+    words = f"full sliding, {law.words}"
+    if not isinstance(law, Constant):
+        low, high = friction_range(scene, contact)
+        met = f"{low:g}" if low == high else f"{low:g} to {high:g}"
+        words += f"; the scene meets mu = {met}" + (" at p = 0" if law.depends_on_pressure else "")
+    return words + ": every stroke is longer than the elastic slip"
+
+
+def _wear_in_words(scene: Scene, contact: ContactSpec) -> str:
+    rate, end = contact.wear_rate, scene.program.slid(scene.program.strokes)
+    low, high = rate.curve.extremes(0.0, end)
+    return f"by lubrication, {len(rate.distance)} rows; the scene meets k = {low:g} to {high:g} mm²/N"
 
 
 def _memory_in_words(scene: Scene) -> str:

@@ -17,14 +17,15 @@ FINER = 0.7  # of the size that the contacts ask for: what the indicator must fa
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 
-def wanted_size(stage: Stage, phases: list[Array], *, reach: float = 2.0) -> SizeField:
+def wanted_size(stage: Stage, phases: list[Array], *, reach: float = 2.0, sliding: float = 0.0) -> SizeField:
     """Element sizes for the present states, one for each stroke of the cycle.
 
-    The patch's where a followed contact carries load or its gap is below ``reach`` patches; elsewhere what brings
-    the indicator of an element to its share of ``Accuracy.stress_error``.
+    The patch's where a followed contact carries load, its gap is below ``reach`` patches, or wear over a distance of
+    ``sliding`` [mm] may close it; elsewhere what brings the indicator of an element to its share of
+    ``Accuracy.stress_error``.
     """
     accuracy = stage.scene.accuracy
-    asked = _contact_places(stage, phases, reach)
+    asked = _contact_places(stage, phases, reach, sliding)
     contacts = SizeField(asked, np.full(len(asked), accuracy.patch), accuracy.coarse, accuracy.grading)
     places, sizes = _stress_sizes(stage, phases)
     heard = sizes < FINER * contacts(places)
@@ -36,17 +37,23 @@ def wanted_size(stage: Stage, phases: list[Array], *, reach: float = 2.0) -> Siz
     )
 
 
-def outgrown(stage: Stage, phases: list[Array]) -> bool:
-    """Whether a followed contact, or a stress, has reached elements that are much too coarse for it."""
-    wanted, body = wanted_size(stage, phases), stage.body
+def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0) -> bool:
+    """Whether a followed contact, or a stress, has reached elements that are much too coarse for it.
+
+    With ``sliding``, whether a contact may do so within that distance [mm].
+    """
+    wanted, body = wanted_size(stage, phases, sliding=sliding), stage.body
     if len(wanted.seeds) == 0:
         return False
     slack = np.where(wanted.sizes > stage.scene.accuracy.patch, STRESS_SLACK, CONTACT_SLACK)
     return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
 
 
-def _contact_places(stage: Stage, phases: list[Array], reach: float) -> Array:
-    """Contour points where a followed contact carries load or nearly so, shape (k, 2)."""
+def _contact_places(stage: Stage, phases: list[Array], reach: float, sliding: float) -> Array:
+    """Contour points where a followed contact carries load or nearly so, or may come to, shape (k, 2).
+
+    A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate.
+    """
     contour = stage.body.contour
     ask = np.zeros(len(contour), dtype=bool)
     vector = stage.problem.state.vec.FV().NumPy()
@@ -55,7 +62,9 @@ def _contact_places(stage: Stage, phases: list[Array], reach: float) -> Array:
         vector[:] = phase
         for spec in stage.scene.followed:
             profile = stage.contacts[spec.name].profile()
-            near = (profile.nominal_pressure > 0) | (profile.gap < reach * stage.scene.accuracy.patch)
+            pressure = profile.nominal_pressure
+            deepest = spec.wear_rate.highest * sliding * pressure.max(initial=0.0)
+            near = (pressure > 0) | (profile.gap < reach * stage.scene.accuracy.patch + deepest)
             ask |= _spanned(contour, profile, near)
     vector[:] = keep
     return contour.points[ask]

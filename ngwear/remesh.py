@@ -22,12 +22,24 @@ FARTHEST = 1.0  # of the patch's edge: how far the outline may move on one mesh
 
 
 def is_due(state: State) -> bool:
-    """Whether the contact has outgrown the patch, or the outline has moved or shrunk too far for its mesh."""
-    body, accuracy = state.stage.body, state.stage.scene.accuracy
+    """Whether the contact has outgrown the patch, or the outline has moved or shrunk too far for its mesh.
+
+    Never so if the scene lets the nodes move as far as they can.
+    """
+    body, scene = state.stage.body, state.stage.scene
+    accuracy = scene.accuracy
+    if scene.wear.remesh != "due":
+        return False
     moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
     if moved > FARTHEST * accuracy.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
         return True
     return outgrown(state.stage, [p.vector for p in state.phases])
+
+
+def still_to_slide(state: State) -> float:
+    """Sliding distance for which a mesh made now shall do [mm]: all that is left, unless new ones come when due."""
+    scene, program = state.stage.scene, state.stage.scene.program
+    return 0.0 if scene.wear.remesh == "due" else program.slid(program.strokes) - program.slid(state.strokes)
 
 
 def remesh(state: State, contour: Contour | None = None) -> None:
@@ -38,7 +50,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
     """
     old = state.stage
     contour = old.body.contour if contour is None else contour
-    wanted = wanted_size(old, [p.vector for p in state.phases])
+    wanted = wanted_size(old, [p.vector for p in state.phases], sliding=still_to_slide(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
@@ -59,8 +71,8 @@ def remesh(state: State, contour: Contour | None = None) -> None:
 
 
 def _moved_values(before: Contour, after: Contour, values: Array) -> Array:
-    """Values at the points of one outline at those of another with almost the same shape."""
+    """Values at the points of one outline, their last axis, at those of another with almost the same shape."""
     from scipy.spatial import cKDTree
 
     _, nearest = cKDTree(before.points).query(after.points)
-    return values[nearest]
+    return values[..., nearest]

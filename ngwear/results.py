@@ -70,22 +70,20 @@ class Recorder:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
-        full, part = divmod(report.last_stroke, len(cycle))
-        sliding = full * sum(s.travel for s in cycle) + sum(s.travel for s in cycle[:part])
         depth = depths(scene.contour, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
             "stroke [-]": report.last_stroke,
             "kind [-]": cycle[report.phase].name,
             "strokes in one solve [-]": report.repeats,  # 0: the outline as it is, without wear
-            "sliding distance [mm]": sliding,
+            "sliding distance [mm]": scene.program.slid(report.last_stroke),
             "worn area by the law [mm^2]": ledger.worn,
             "area removed from the outline [mm^2]": ledger.removed,
             "error estimate of worn area [mm^2]": ledger.area_error,
             "maximum depth [mm]": float(depth.max()),
             "error estimate of maximum depth [mm]": ledger.depth_error,
         }
-        for name in dict.fromkeys(e for c in scene.contacts if c.specific_wear_rate > 0 for e in c.edges):
+        for name in dict.fromkeys(e for c in scene.contacts if c.wears for e in c.edges):
             on = scene.contour.on((name,))
             row[f"depth at {name} [mm]"] = float(depth[on].max())
         for contact, profile in report.contacts.items():
@@ -97,9 +95,10 @@ class Recorder:
             row[f"{contact} contact zones [-]"] = len(zones)
         for name, force in report.forces.items():
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
-        for name, drag in report.drags.items():
-            heat = drag * cycle[report.phase].travel
+        for name, heat in report.heats.items():
             row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
+        row |= {f"{name} friction coefficient [-]": mu for name, mu in report.coefficients.items()}
+        row |= {f"{name} specific wear rate [mm^2/N]": rate for name, rate in report.wear_rates.items()}
         row |= {
             "leaks [-]": int(report.leaks),
             "Newton iterations [-]": report.iterations,
@@ -143,7 +142,7 @@ class Recorder:
         }
         if radius is not None:
             out["worn volume [mm^3]"] = 2 * np.pi * radius
-        for name in dict.fromkeys(e for c in scene.contacts if c.specific_wear_rate > 0 for e in c.edges):
+        for name in dict.fromkeys(e for c in scene.contacts if c.wears for e in c.edges):
             out[f"{name} depth [mm]"] = float(depth[scene.contour.on((name,))].max())
         peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
         for kind in cycle:
@@ -247,6 +246,16 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         outline["points [mm]"] = scene.contour.points
         outline["edges"] = np.array(scene.contour.names, dtype=h5py.string_dtype())
         outline.attrs["provenance"] = scene.contour.provenance
+        h5.attrs["memory"] = scene.arms is not None
+        h5.attrs["laws over distance"] = any(
+            c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
+        )
+        contacts = h5.create_group("contacts")
+        for spec in scene.contacts:
+            group = contacts.create_group(spec.name)
+            rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
+            mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
+            group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
         put_series(h5, recorder.rows)
         strokes = h5.create_group("strokes")
         for number, snapshot in enumerate(recorder.snapshots):

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 from ngwear.errors import SceneError
 from ngwear.geometry.contour import Contour
+from ngwear.laws import FrictionLaw, WearRate, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.surfaces import RigidSurface
 
@@ -26,9 +27,9 @@ class ContactSpec:
     edges : tuple of str
     surface : RigidSurface
         In its final place; while mounting it comes in from first touch.
-    friction : float
+    friction : FrictionLaw or float
         Coefficient of full sliding friction [-], >= 0.
-    specific_wear_rate : float
+    specific_wear_rate : WearRate or float
         Archard's k [mm²/N], >= 0: depth per nominal pressure and sliding distance.
     force : float or None
         Press the surface on with this force [N, or N/mm in plane strain] instead of by its place.
@@ -39,24 +40,38 @@ class ContactSpec:
     name: str
     edges: tuple[str, ...]
     surface: RigidSurface
-    friction: float = 0.0
-    specific_wear_rate: float = 0.0
+    friction: FrictionLaw | float = 0.0
+    specific_wear_rate: WearRate | float = 0.0
     force: float | None = None
     refine: bool = False
 
     def __post_init__(self) -> None:
         place = f"contact '{self.name}'"
         _require(bool(self.edges), f"{place}.edges", self.edges, "name at least one edge")
-        _require(self.friction >= 0, f"{place}.friction", self.friction, "must be at least 0")
-        _require(
-            self.specific_wear_rate >= 0,
-            f"{place}.specific_wear_rate",
-            self.specific_wear_rate,
-            "must be at least 0 mm²/N",
-        )
+        if not isinstance(self.friction, FrictionLaw):
+            _require(self.friction >= 0, f"{place}.friction", self.friction, "must be at least 0")
+        if not isinstance(self.specific_wear_rate, WearRate):
+            rate = self.specific_wear_rate
+            _require(rate >= 0, f"{place}.specific_wear_rate", rate, "must be at least 0 mm²/N")
         _require(
             self.force is None or self.force > 0, f"{place}.force", self.force, "must be greater than 0 (it presses)"
         )
+
+    @property
+    def friction_law(self) -> FrictionLaw | None:
+        """The law of friction; None without any."""
+        return law_of(self.friction)
+
+    @property
+    def wear_rate(self) -> WearRate:
+        """The specific wear rate as a table, of one row for a number."""
+        rate = self.specific_wear_rate
+        return rate if isinstance(rate, WearRate) else WearRate(distance=(0.0,), rate=(rate,))
+
+    @property
+    def wears(self) -> bool:
+        """Whether there is any wear."""
+        return self.wear_rate.highest > 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -136,6 +151,11 @@ class Program:
             self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without it the part relaxes fully"
         )
 
+    def slid(self, strokes: int) -> float:
+        """Sliding distance after so many strokes [mm]."""
+        full, part = divmod(strokes, len(self.cycle))
+        return full * sum(s.travel for s in self.cycle) + sum(s.travel for s in self.cycle[:part])
+
     @property
     def duration(self) -> float:
         """Time that all strokes take [s]."""
@@ -167,6 +187,9 @@ class Accuracy:
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side.
     folding_error : float
         Largest relative error of stress that arms of the memory may cause by being folded away [-].
+    pointwise : float
+        Volumetric stiffness kept at each point over the shear modulus [-], >= 0; the energy is the same for all.
+        Pressures of several G ask for about 10, friction of about G for 0 (``effects.elasticity``).
     """
 
     patch: float = 0.01
@@ -177,6 +200,7 @@ class Accuracy:
     stress_error: float = 0.05
     wear_error: float = 0.08
     folding_error: float = 1e-3
+    pointwise: float = 10.0
 
     def __post_init__(self) -> None:
         _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
@@ -189,11 +213,17 @@ class Accuracy:
         _require(
             0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
         )
+        _require(
+            0 <= self.pointwise < math.inf, "accuracy.pointwise", self.pointwise, "must be at least 0 and not infinite"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wear:
-    """How the worn depth is integrated.
+    """How the worn depth is integrated, and what becomes of the mesh.
+
+    The nodes follow the worn outline, those inside smoothly; a mesh can do so until its elements are squeezed or folded
+    (``Body.move_to``). With ``remesh`` other than ``"due"`` it is fine at once wherever the wear may take the contact.
 
     Parameters
     ----------
@@ -203,11 +233,15 @@ class Wear:
         ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"each"``: every stroke.
     max_jump : int
         Most cycles at once.
+    remesh : str
+        ``"due"``: a new mesh as soon as another would be better for the present contact; ``"limit"``: once the nodes
+        cannot be moved any further; ``"never"``: the run gives up there.
     """
 
     scheme: str = "implicit"
     step: str = "jump"
     max_jump: int = 1000
+    remesh: str = "due"
 
     def __post_init__(self) -> None:
         _require(
@@ -215,6 +249,9 @@ class Wear:
         )
         _require(self.step in ("jump", "each"), "wear.step", self.step, "must be 'jump' or 'each'")
         _require(self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
+        _require(
+            self.remesh in ("due", "limit", "never"), "wear.remesh", self.remesh, "must be 'due', 'limit' or 'never'"
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -288,12 +325,22 @@ class Scene:
                 stroke.pressure,
                 "a sealed pressure needs a [fluid] table that says which edges it may reach",
             )
+            place = f"program.stroke '{stroke.name}'.speed"
+            known_speed = stroke.speed is not None
             _require(
-                self.prony is None or stroke.speed is not None,
-                f"program.stroke '{stroke.name}'.speed",
+                self.prony is None or known_speed,
+                place,
                 stroke.speed,
                 "rubber with memory needs the stroke's speed in mm/s",
             )
+            for contact in self.contacts:
+                law = contact.friction_law
+                _require(
+                    law is None or not law.depends_on_speed or known_speed,
+                    place,
+                    stroke.speed,
+                    f"the friction of contact '{contact.name}' depends on speed: give the stroke's in mm/s",
+                )
         for contact in self.contacts:
             self._check_side(contact)
 
@@ -340,4 +387,4 @@ class Scene:
     @property
     def followed(self) -> tuple[ContactSpec, ...]:
         """Contacts that the mesh follows."""
-        return tuple(c for c in self.contacts if c.refine or c.specific_wear_rate > 0)
+        return tuple(c for c in self.contacts if c.refine or c.wears)

@@ -9,6 +9,7 @@ from typing import Any
 
 from ngwear.errors import SceneError
 from ngwear.geometry.contour_files import read_contour
+from ngwear.input.laws import read_friction, read_wear_rate
 from ngwear.input.material import read_arms, read_material
 from ngwear.input.pin import pin_scene
 from ngwear.input.tables import coordinate, get, known, record, subtable, tables, typed
@@ -59,7 +60,7 @@ def read_scene(path: Path | str) -> Scene | PinScene:
     kind, name = get(head, "scene", "kind"), str(head.get("name", path.stem))
     if not isinstance(kind, str) or kind not in (*KINDS, PIN):
         raise SceneError("scene.kind", kind, f"must be one of {[*KINDS, PIN]}")
-    return pin_scene(data, name) if kind == PIN else _wear_scene(data, name, path.parent)
+    return pin_scene(data, name, path.parent) if kind == PIN else _wear_scene(data, name, path.parent)
 
 
 def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
@@ -73,7 +74,7 @@ def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
         contour=read_contour(folder / str(get(outline, "contour", "file"))),
         material=read_material(subtable(data, "material")),
         prony=read_arms(data["material"]["prony"]) if "prony" in data["material"] else None,
-        contacts=tuple(_contact(i, table) for i, table in enumerate(tables(data, "contact"))),
+        contacts=tuple(_contact(i, table, folder) for i, table in enumerate(tables(data, "contact"))),
         fluid=record(FluidSpec, "fluid", data["fluid"]) if "fluid" in data else None,
         supports=tuple(record(SupportSpec, f"support[{i}]", t) for i, t in enumerate(tables(data, "support"))),
         program=_program(subtable(data, "program")),
@@ -83,7 +84,7 @@ def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
     )
 
 
-def _contact(number: int, table: dict[str, Any]) -> ContactSpec:
+def _contact(number: int, table: dict[str, Any], folder: Path) -> ContactSpec:
     place = f"contact[{number}]"
     if not isinstance(table, dict):
         raise SceneError(place, table, "must be a table")
@@ -93,6 +94,9 @@ def _contact(number: int, table: dict[str, Any]) -> ContactSpec:
         raise SceneError(f"{place}.surface", surface, 'must be a table, such as { type = "rod", diameter = 22.2 }')
     surface = dict(surface)
     values["surface"] = _surface(f"{place}.surface", surface)
+    for key, read in (("friction", read_friction), ("specific_wear_rate", read_wear_rate)):
+        if key in values:
+            values[key] = read(f"{place}.{key}", values[key], folder)
     return record(ContactSpec, place, values)
 
 

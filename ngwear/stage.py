@@ -40,7 +40,7 @@ class Stage:
         self.scene, self.body = scene, body
         rubber = scene.rubber
         modulus = rubber.shear_modulus
-        self.elasticity = Elasticity(rubber, order=scene.accuracy.order)
+        self.elasticity = Elasticity(rubber, order=scene.accuracy.order, pointwise=scene.accuracy.pointwise)
         self.contacts = {
             spec.name: Contact(
                 spec.name, spec.edges, spec.surface, modulus=modulus, force_controlled=spec.force is not None
@@ -48,9 +48,9 @@ class Stage:
             for spec in scene.contacts
         }
         self.frictions = {
-            spec.name: FullSliding(self.contacts[spec.name], spec.friction)
+            spec.name: FullSliding(self.contacts[spec.name], spec.friction_law, speed=scene.program.cycle[0].speed)
             for spec in scene.contacts
-            if spec.friction > 0
+            if spec.friction_law is not None
         }
         self.fluid = None
         if scene.fluid is not None:

@@ -29,8 +29,8 @@ class Phase:
         Equilibrium of the last time.
     rate : array or None
         Its change per cycle, on the same mesh.
-    pressure : array, shape (n,)
-        Nominal pressure of all wearing contacts at the contour points [MPa], of the last time.
+    pressure : array, shape (contacts, n)
+        Highest wear rate times nominal pressure of each contact at the contour points [-], of the last time.
     """
 
     vector: Array
@@ -114,8 +114,11 @@ class StrokeReport:
         The followed contacts at equilibrium.
     forces : dict of str to array, shape (2,)
         Resultants on the part [N, or N/mm].
-    drags : dict of str to float
-        Friction's heat over the way slid, of each contact that has friction [N, or N/mm].
+    heats : dict of str to float
+        Heat of the friction in one stroke, of each contact that has friction [mJ, or mJ/mm].
+    coefficients, wear_rates : dict of str to float
+        Mean friction coefficient under the pressure [-] and mean k of the strokes [mm²/N], of the contacts whose law is
+        no constant.
     leaks : bool
         Whether the fluid meets no contact.
     contour : Contour
@@ -130,7 +133,9 @@ class StrokeReport:
     iterations: int
     contacts: dict[str, ContactProfile]
     forces: dict[str, Array]
-    drags: dict[str, float]
+    heats: dict[str, float]
+    coefficients: dict[str, float]
+    wear_rates: dict[str, float]
     leaks: bool
     contour: Contour
     ledger: Ledger

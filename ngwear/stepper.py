@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.cycle_memory import CycleMemory
+from ngwear.drift import steady_cycles
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.fields.background import Background
@@ -22,13 +23,14 @@ from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import smoothed
 from ngwear.refinement import mounting_field, outgrown, wanted_size
-from ngwear.remesh import is_due, remesh
+from ngwear.remesh import is_due, remesh, still_to_slide
 from ngwear.scene import Scene, Stroke
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
-from ngwear.wear.archard import critical_distance, worn_share
+from ngwear.wear.archard import at_points, critical_distance, worn_share
 from ngwear.wear.control import JumpControl
 from ngwear.wear.cycles import Plan
+from ngwear.wear.strokes import Strokes
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -50,12 +52,12 @@ class Stepper:
     def __init__(self, scene: Scene, *, on_mount: Callable[[float], None] | None = None) -> None:
         self.scene = scene
         self.on_mount = on_mount or (lambda fraction: None)
-        self.worn_edges = tuple(e for c in scene.contacts if c.specific_wear_rate > 0 for e in c.edges)
+        self.worn_edges = tuple(e for c in scene.contacts if c.wears for e in c.edges)
         self._warn_if_unstable()
 
     def _warn_if_unstable(self) -> None:
         wear, cycle = self.scene.wear, self.scene.program.cycle
-        rate = max((c.specific_wear_rate for c in self.scene.contacts), default=0.0)
+        rate = max((c.wear_rate.highest for c in self.scene.contacts), default=0.0)
         critical = critical_distance(self.scene.accuracy.patch, rate, self.scene.material.plane_strain_modulus)
         longest = max(s.travel for s in cycle)
         if wear.scheme == "explicit" and longest > critical:
@@ -86,12 +88,14 @@ class Stepper:
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
-        while outgrown(state.stage, [p.vector for p in state.phases]) and state.ledger.remeshes < 4:
+        ahead = still_to_slide(state)
+        while outgrown(state.stage, [p.vector for p in state.phases], sliding=ahead) and state.ledger.remeshes < 4:
             remesh(state)
             state.reports = []
             for i, stroke in enumerate(scene.program.cycle):
-                iterations = self._solve_phase(state, i, stroke, far=state.ledger.remeshes == 1)
-                state.reports.append(self._observe(state, i, iterations))
+                sliding = self._strokes(i, 0)
+                iterations = self._solve_phase(state, i, stroke, sliding, far=state.ledger.remeshes == 1)
+                state.reports.append(self._observe(state, i, iterations, sliding))
             self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
         if scene.arms is not None:
             self._remember(state)
@@ -154,6 +158,7 @@ class Stepper:
             goal = min([m for m in self.scene.save.strokes if m > state.strokes] + [program.strokes])
             left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
             cycles = 1 if self.scene.wear.step == "each" else min(state.control.cycles, left)
+            cycles = steady_cycles(self.scene, state.strokes, cycles)
             saved = self._save(state)
             try:
                 ratio = self._step(state, cycles)
@@ -183,8 +188,9 @@ class Stepper:
                 continue
             saved = state.phases[i]
             state.phases[i] = replace(saved, rate=None)
-            iterations = self._solve_phase(state, i, stroke, plan=self._plan(state.strokes, 1, state.strokes + kinds))
-            state.reports.insert(-1, self._observe(state, i, iterations))
+            sliding, plan = self._strokes(i, state.strokes), self._plan(state.strokes, 1, state.strokes + kinds)
+            iterations = self._solve_phase(state, i, stroke, sliding, plan=plan)
+            state.reports.insert(-1, self._observe(state, i, iterations, sliding))
             state.phases[i] = saved
         problem = state.stage.problem
         problem.set_loads(state.stage.stroke_loads(self.scene.program.cycle[latest]))
@@ -215,14 +221,15 @@ class Stepper:
         plan = self._plan(state.strokes, cycles, self.scene.program.strokes)
         state.reports = []
         worn_before, error_before, known = state.ledger.worn, state.ledger.area_error, True
-        for i, repeats in plan:
-            distance = repeats * cycle[i].travel
-            iterations = self._solve_phase(state, i, cycle[i], plan=plan, distance=distance, repeats=repeats)
+        begin = state.strokes
+        for k, (i, repeats) in enumerate(plan):
+            sliding = self._strokes(i, begin + k, repeats)
+            iterations = self._solve_phase(state, i, cycle[i], sliding, plan=plan)
             if memory is not None:
                 memory.leave(state.stage.memory, i)
-            seen = self._observe(state, i, iterations)
+            seen = self._observe(state, i, iterations, sliding)
             state.strokes += repeats
-            known &= self._wear(state, i, distance)
+            known &= self._wear(state, i, sliding)
             state.reports.append(
                 replace(
                     seen,
@@ -241,6 +248,12 @@ class Stepper:
             return math.nan
         return (state.ledger.area_error - error_before) / worn if worn > 0 else 0.0
 
+    def _strokes(self, kind: int, done: int, repeats: int = 0) -> Strokes:
+        """Strokes of a kind, the first of which begins after ``done`` strokes of any."""
+        program = self.scene.program
+        kinds = len(program.cycle)
+        return Strokes(program.slid(done), program.cycle[kind].travel, program.slid(kinds), repeats)
+
     def _plan(self, done: int, cycles: int, end: int) -> Plan:
         """Strokes of a step that begins after ``done`` strokes: each kind in turn, and how often until ``end``."""
         kinds = len(self.scene.program.cycle)
@@ -252,13 +265,12 @@ class Stepper:
         state: State,
         index: int,
         stroke: Stroke,
+        sliding: Strokes,
         *,
         plan: Plan = (),
-        distance: float = 0.0,
-        repeats: int = 0,
         far: bool = False,
     ) -> int:
-        """Bring one stroke of the cycle to equilibrium, its wear over ``distance`` implicit; return iterations.
+        """Bring one stroke of the cycle to equilibrium, its wear over ``sliding`` implicit; return iterations.
 
         ``plan`` is the step's, for the memory.
         ``far`` says that the last state comes from a much coarser mesh: it is then walked from, not tried first.
@@ -269,10 +281,13 @@ class Stepper:
         problem.set_loads(stage.stroke_loads(stroke))
         implicit = self.scene.wear.scheme == "implicit"
         for spec in self.scene.contacts:
-            stage.contacts[spec.name].compliance.Set(spec.specific_wear_rate * distance if implicit else 0.0)
+            worn = sliding.worn_depth(spec.wear_rate)
+            stage.contacts[spec.name].compliance.Set(worn if implicit else 0.0)
+        for friction in stage.frictions.values():
+            friction.coefficient.set_state(sliding.middle, stroke.speed)
         if state.memory is not None:
             state.memory.enter(stage.memory, plan, index)
-        before, fresh = phase.vector, phase.rate is None
+        before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
         work = Work()
         guesses = [before] if fresh else [before + repeats * phase.rate, before]
         for guess in [] if far else guesses:
@@ -288,7 +303,7 @@ class Stepper:
         state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None)
         return work.iterations
 
-    def _observe(self, state: State, index: int, iterations: int) -> StrokeReport:
+    def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """What there is to see at the stroke's equilibrium."""
         stage = state.stage
         return StrokeReport(
@@ -298,7 +313,9 @@ class Stepper:
             iterations=iterations,
             contacts={spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed},
             forces=stage.forces(),
-            drags={name: friction.drag() for name, friction in stage.frictions.items()},
+            heats={name: friction.heat(sliding.travel) for name, friction in stage.frictions.items()},
+            coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
+            wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
             leaks=stage.fluid is not None and stage.fluid.leaks,
             contour=state.contour,
             ledger=replace(state.ledger),
@@ -325,25 +342,26 @@ class Stepper:
                 f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
             ) from None
 
-    def _wear(self, state: State, index: int, distance: float) -> bool:
+    def _wear(self, state: State, index: int, sliding: Strokes) -> bool:
         """Take the stroke's worn area off the outline; return whether its error is known."""
         stage, contour = state.stage, state.contour
         share = np.zeros(len(contour))
-        pressure = np.zeros(len(contour))
+        half = np.zeros(len(contour))
+        pressure = np.zeros((len(self.scene.contacts), len(contour)))
         old = state.phases[index].pressure
         if state.depth_error is None:
             state.depth_error = np.zeros(len(contour))
-        for spec in self.scene.contacts:
-            if spec.specific_wear_rate == 0:
+        known = old is not None
+        for spec, here, before in zip(self.scene.contacts, pressure, old if known else pressure, strict=True):
+            if not spec.wears:
                 continue
             contact = stage.contacts[spec.name]
             profile = contact.profile()
             ratio = contact.at_nodes(stage.elasticity.volume_ratio())
-            share += worn_share(contour, profile, spec.specific_wear_rate * distance * profile.load / ratio)
-            pressure += _at_points(contour, profile, spec.specific_wear_rate * profile.load / profile.weight)
-        known = old is not None
+            share += worn_share(contour, profile, sliding.worn_depth(spec.wear_rate) * profile.load / ratio)
+            here[:] = at_points(contour, profile, spec.wear_rate.highest * profile.load / profile.weight)
+            half += 0.5 * sliding.worn_distance(spec.wear_rate) * (before - here)
         if known:
-            half = 0.5 * distance * (old - pressure)
             width = 0.5 * (contour.lengths + np.roll(contour.lengths, 1))
             state.ledger.area_error += float(np.abs(half) @ width)
             state.depth_error += np.abs(half)
@@ -357,28 +375,34 @@ class Stepper:
                 f"the outline lost {removed:.4g} mm² where the law wears {share.sum():.4g} mm²: healing took too much"
             )
         state.ledger.removed += removed
-        if len(new) == len(contour):
-            try:
-                stage.body.move_to(new)
-                return known
-            except MeshError as error:
-                log.info("%s: a new mesh is needed", error)
-        remesh(state, new)
+        self._follow(state, new)
         return known
+
+    def _follow(self, state: State, worn: Contour) -> None:
+        """Let the mesh follow to a worn outline; make a new one where it cannot, unless the scene forbids it.
+
+        Raises
+        ------
+        MeshError
+            If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
+        """
+        body, why = state.stage.body, "the outline needs other points"
+        if len(worn) == len(body.contour):
+            try:
+                body.move_to(worn)
+                return
+            except MeshError as error:
+                why = str(error)
+        if self.scene.wear.remesh == "never":
+            deepest = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
+            raise MeshError(
+                f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; go on with new meshes "
+                "by wear.remesh = 'limit' or 'due', or begin with larger elements (accuracy.patch)"
+            )
+        log.info("%s: a new mesh is needed", why)
+        remesh(state, worn)
 
 
 def _without_fluid(loads: dict[str, float]) -> dict[str, float]:
     """Loads with the sealed pressure taken off."""
     return {name: 0.0 if "fluid" in name else value for name, value in loads.items()}
-
-
-def _at_points(contour: Contour, profile: Any, values: Array) -> Array:
-    """Nodal values of a contact at the contour points, zero off its edges."""
-    n = len(contour)
-    out = np.zeros(n)
-    for i, j in profile.edges:
-        a, b = profile.t[i], profile.t[j]
-        b = b if b > a else b + n
-        inside = np.arange(math.ceil(a - 1e-9), math.floor(b + 1e-9) + 1)
-        out[inside % n] = np.interp(inside, [a, b], [values[i], values[j]])
-    return out

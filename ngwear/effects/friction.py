@@ -1,27 +1,36 @@
-"""Full sliding friction: the cheap term for strokes much longer than the elastic slip."""
+"""Friction along a contact, and its cheap form for strokes much longer than the elastic slip: full sliding."""
 
 from __future__ import annotations
+
+import abc
+from typing import Any
 
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
+from ngwear.effects.coefficient import Coefficient
 from ngwear.effects.unilateral import UnilateralContact
-from ngwear.errors import SceneError
+from ngwear.laws import Constant, FrictionLaw
 
 
-class FullSliding(Term):
-    """Traction ``mu P`` along the surface's motion everywhere in contact (Coulomb, no stick zone).
+class Friction(Term):
+    """Coulomb friction of a contact under a law.
 
-    The load ``"NAME slip"`` in [-1, 1] is the direction in which the surface moves along its tangent (the
-    surface's normal turned clockwise); values between ramp a reversal. Neglects the stick phase after a
-    reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric.
+    A surface under force carries the friction too: the force balances pressure and friction together.
 
     Parameters
     ----------
     contact : UnilateralContact
-    coefficient : float
-        mu [-], >= 0.
+    law : FrictionLaw or float
+        mu [-], >= 0. A law by pressure takes the Cauchy pressure P / (da/dA) of the state that is sought.
+    speed : float or None
+        Of the sliding at first [mm/s].
+
+    Attributes
+    ----------
+    coefficient : Coefficient
+        Its ``set_state`` goes to the distance and the speed of the next solve.
 
     Raises
     ------
@@ -31,36 +40,76 @@ class FullSliding(Term):
 
     symmetric = False
 
-    def __init__(self, contact: UnilateralContact, coefficient: float) -> None:
+    def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
         super().__init__()
-        if coefficient < 0:
-            raise SceneError(f"contact {contact.name}.friction", coefficient, "must be at least 0")
-        self.contact, self.coefficient = contact, coefficient
+        self.contact, self.coefficient = contact, Coefficient(contact.name, law, speed=speed)
+
+    @abc.abstractmethod
+    def force(self) -> Array:
+        """Resultant of the friction on the part; [N], or N/mm in plane strain."""
+
+    @abc.abstractmethod
+    def heat(self, way: float) -> float:
+        """Heat of a stroke in which the surface slides a way [mm]; [mJ], or mJ/mm in plane strain."""
+
+    @property
+    def varies(self) -> bool:
+        """Whether the law is more than a number."""
+        return not isinstance(self.coefficient.law, Constant)
+
+    def mu(self) -> Any:
+        """Coefficient of friction at the present state [-], a field for a law by pressure."""
+        state, kinematics = self._unknowns.state, self._unknowns.kinematics
+        u = state[DISPLACEMENT]
+        return self.coefficient(state[self.contact.pressure_name] / kinematics.area_stretch(u, ng.Grad(u)))
+
+    def mean(self) -> float:
+        """Highest possible friction over load, ``int mu P dA / int P dA`` [-]; 0 out of contact."""
+        pressure = self._unknowns.state[self.contact.pressure_name]
+        load = self._integral(pressure)
+        return self._integral(self.mu() * pressure) / load if load > 0 else 0.0
+
+    def _integral(self, traction: Any) -> float:
+        """Of a nominal traction over the contact's edges, at the present state."""
+        known = self._unknowns
+        measure = ng.ds(definedon=known.body.boundary(self.contact.edges), bonus_intorder=2)
+        return float(ng.Integrate(traction * known.kinematics.weight * measure, known.body.mesh))
+
+
+class FullSliding(Friction):
+    """Traction ``mu P`` along the surface's motion everywhere in contact (Coulomb, no stick zone).
+
+    The load ``"NAME slip"`` in [-1, 1] is the direction in which the surface moves along its tangent (the
+    surface's normal turned clockwise); values between ramp a reversal. Neglects the stick phase after a
+    reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric.
+    Parameters and errors as of ``Friction``.
+    """
+
+    def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
+        super().__init__(contact, law, speed=speed)
         self.slip = ng.Parameter(1.0)
         self.loads = {f"{contact.name} slip": self.slip}
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         contact = self.contact
         p = unknowns.trial[contact.pressure_name]
+        u = unknowns.u
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
-        traction = self.coefficient * self.slip * p * unknowns.kinematics.weight
-        work = -traction * sum(t * unknowns.v[i] for i, t in enumerate(tangent))
+        stretch = unknowns.kinematics.area_stretch(u, ng.Grad(u).Trace())
+        traction = self.coefficient(p / stretch) * self.slip * p * unknowns.kinematics.weight
+        work = -traction * sum(t * v for t, v in zip(tangent, contact.virtual(unknowns), strict=True))
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
 
-    def force(self) -> np.ndarray:
-        """Resultant of the friction on the part; [N], or N/mm in plane strain."""
+    def force(self) -> Array:
         tangent = self.contact.surface.tangent(*self.contact.place(self._unknowns.state))
-        return np.array([self._integral(self.slip.Get() * t) for t in tangent])
+        return np.array([self._integral(self.slip.Get() * t * self._limit()) for t in tangent])
 
-    def drag(self) -> float:
-        """``int mu P dA``: heat of the friction over the way that the surface slides; [N], or N/mm in plane strain."""
-        return self._integral(1.0)
+    def heat(self, way: float) -> float:
+        """``way int mu P dA``."""
+        return way * self._integral(self._limit())
 
-    def _integral(self, factor: ng.CoefficientFunction | float) -> float:
-        """Of the traction ``mu P`` times a factor."""
-        known, contact = self._unknowns, self.contact
-        traction = self.coefficient * known.state[contact.pressure_name] * known.kinematics.weight
-        measure = ng.ds(definedon=known.body.boundary(contact.edges), bonus_intorder=2)
-        return float(ng.Integrate(factor * traction * measure, known.body.mesh))
+    def _limit(self) -> Any:
+        """Nominal traction mu P of the present state [MPa]."""
+        return self.mu() * self._unknowns.state[self.contact.pressure_name]

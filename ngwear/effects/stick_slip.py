@@ -5,15 +5,17 @@ from __future__ import annotations
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
+from ngwear.effects.friction import Friction
 from ngwear.effects.unilateral import UnilateralContact
-from ngwear.errors import SceneError
 from ngwear.geometry.meshed import Meshed
+from ngwear.laws import FrictionLaw
 
 RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
+NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
 
 
-class StickSlip(Term):
+class StickSlip(Friction):
     """Coulomb's law over one step, from the state of the last accepted one; the nominal traction T is an unknown.
 
         |T| <= mu P,   s = 0 where |T| < mu P,   else T = - mu P s / |s|
@@ -26,26 +28,13 @@ class StickSlip(Term):
     (1991) 353); its tangent is consistent and unsymmetric. Only ``commit`` moves the history, once a step is accepted.
     The contact must stand before this term in the problem's list.
 
-    Parameters
-    ----------
-    contact : UnilateralContact
-    coefficient : float
-        mu [-], >= 0.
-
-    Raises
-    ------
-    SceneError
-        For a negative coefficient.
+    Parameters and errors as of ``Friction``; the coefficient's distance and speed are those of the step.
     """
 
-    symmetric = False
     remembers = True
 
-    def __init__(self, contact: UnilateralContact, coefficient: float) -> None:
-        super().__init__()
-        if not coefficient >= 0:
-            raise SceneError(f"contact {contact.name}.friction", coefficient, "must be at least 0")
-        self.contact, self.coefficient = contact, coefficient
+    def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
+        super().__init__(contact, law, speed=speed)
         self.travel = ng.Parameter(0.0)
         self._travel_before = ng.Parameter(0.0)
         self.loads = {f"{contact.name} travel [mm]": self.travel}
@@ -63,13 +52,13 @@ class StickSlip(Term):
         self._before = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         give = contact.lengths(body) / contact.modulus
         tangents = contact.surface.tangents(*contact.place(unknowns.trial))
-        p = unknowns.trial[contact.pressure_name]
-        bearing = ng.IfPos(contact.pushed(unknowns.trial), ng.IfPos(p, p, 0.0), 0.0)
         tractions = [unknowns.trial[name] for name in self.tractions]
-        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=self.coefficient * bearing, give=give)
-        work = sum(
-            a * sum(t[i] * unknowns.v[i] for i in range(len(t))) for a, t in zip(tractions, tangents, strict=True)
-        )
+        p = unknowns.trial[contact.pressure_name] - NOTHING * contact.modulus
+        stretch = unknowns.kinematics.area_stretch(unknowns.u, ng.Grad(unknowns.u).Trace())
+        bound = self.coefficient(p / stretch) * ng.IfPos(p, p, 0.0)
+        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give)
+        virtual = contact.virtual(unknowns)
+        work = sum(a * sum(t[i] * v for i, v in enumerate(virtual)) for a, t in zip(tractions, tangents, strict=True))
         law = sum(law * unknowns.test[name] for law, name in zip(laws, self.tractions, strict=True))
         region = body.boundary(contact.edges)
         form += (-work * weight).Compile() * ng.ds(definedon=region, bonus_intorder=2)
@@ -93,19 +82,18 @@ class StickSlip(Term):
             parameter.Set(value)
 
     def force(self) -> Array:
-        """Resultant of the friction on the part; [N], or N/mm in plane strain."""
-        state, contact = self._unknowns.state, self.contact
-        tangents = contact.surface.tangents(*contact.place(state))
-        measure = ng.ds(definedon=self._unknowns.body.boundary(contact.edges), bonus_intorder=2)
-        weight, mesh = self._unknowns.kinematics.weight, self._unknowns.body.mesh
+        state = self._unknowns.state
+        tangents = self.contact.surface.tangents(*self.contact.place(state))
+        pairs = list(zip(self.tractions, tangents, strict=True))
         return np.array(
-            [
-                ng.Integrate(
-                    sum(state[n] * t[i] for n, t in zip(self.tractions, tangents, strict=True)) * weight * measure, mesh
-                )
-                for i in range(len(self._motion_before))
-            ]
+            [self._integral(sum(state[n] * t[i] for n, t in pairs)) for i in range(len(self._motion_before))]
         )
+
+    def heat(self, way: float) -> float:
+        """``- int T . s dA`` of the step's slip s, whatever the way."""
+        state = self._unknowns.state
+        slips = self._slips(state, self.contact.surface.tangents(*self.contact.place(state)))
+        return -self._integral(sum(state[n] * s for n, s in zip(self.tractions, slips, strict=True)))
 
 
 def _laws(tractions: list, slips: list, *, bound: ng.CoefficientFunction, give: ng.CoefficientFunction) -> list:

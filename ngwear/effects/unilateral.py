@@ -113,6 +113,13 @@ class UnilateralContact(Term):
         u, motion = fields[DISPLACEMENT], self.motion(fields)
         return tuple(COORDINATES[i] + u[i] - m for i, m in enumerate(motion))
 
+    def virtual(self, unknowns: Unknowns) -> tuple[Any, ...]:
+        """Virtual displacement of the part past the surface: a surface under force moves too, and carries friction."""
+        if not self.force_controlled:
+            return tuple(unknowns.v[i] for i in range(len(self.surface.approach)))
+        travel = unknowns.test[self.travel_name]
+        return tuple(unknowns.v[i] - travel * a for i, a in enumerate(self.surface.approach))
+
     def gap(self, fields: dict[str, Any]) -> Any:
         """Signed distance of the deformed surface from the surface [mm]."""
         return self.surface.gap(*self.place(fields))
@@ -126,7 +133,7 @@ class UnilateralContact(Term):
         give = self.lengths(body) / self.modulus
         self._augmentation = c = 1 / (0.5 * self.softness * give + self.compliance)
         p = unknowns.trial[self.pressure_name]
-        pushed = self.pushed(unknowns.trial)
+        pushed = p - c * self.gap(unknowns.trial)
         closure = 1 + c * (1e-6 * give + self.compliance / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight
@@ -137,10 +144,6 @@ class UnilateralContact(Term):
             travel = unknowns.trial[self.travel_name]
             form += ng.Variation(-self.load * travel / self._extent * ng.ds(definedon=everywhere))
         self._measure()
-
-    def pushed(self, fields: dict[str, Any]) -> Any:
-        """``P - c g``: above 0 where there is contact [MPa]."""
-        return fields[self.pressure_name] - self._augmentation * self.gap(fields)
 
     def force(self) -> Array:
         """Resultant of the contact pressure on the rubber; [N], or N/mm in plane strain."""

@@ -105,14 +105,16 @@ class DirectSolver:
         is_stiff[stiff] = True
         # Entries that couple another unknown to a stiff one.
         self._couplings = np.flatnonzero(~is_stiff[self._rows] & is_stiff[columns])
-        self._scale: NDArray[np.float64] | float = 1.0
+        self._unit: NDArray[np.float64] | float = 1.0  # what makes the matrix's entries near 1
+        self._scale: NDArray[np.float64] | float = 1.0  # what it has been scaled by
         self._inverse: ng.BaseMatrix | None = None
 
     def factorise(self) -> bool:
         """Factorise the matrix as it is now, scaling it in its place; False if it is singular."""
         values = self.matrix.AsVector().FV().NumPy()
+        self._unit = self._scaling(values)
         if self.name == "pardiso":
-            self._scale = self._scaling(values)
+            self._scale = self._unit
             values *= self._scale[self._rows] * self._scale[self._columns]
         try:
             if self._inverse is None:
@@ -138,6 +140,10 @@ class DirectSolver:
         coupling = np.abs(values[self._couplings]) / np.where(to > 0, to, np.inf)
         np.maximum.at(size, at, coupling)
         return 1 / np.where(size > 0, size, 1.0)
+
+    def scaled_norm(self, residual: ng.BaseVector) -> float:
+        """Norm of a residual in which displacements and other unknowns count alike."""
+        return float(np.linalg.norm((self._unit * residual.FV().NumPy())[self._mask]))
 
     def solve(self, right_side: ng.BaseVector, solution: ng.BaseVector) -> float:
         """Solve into ``solution``; return the relative residual (inf if not finite)."""

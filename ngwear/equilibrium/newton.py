@@ -30,6 +30,7 @@ SOFTNESS = (1.0, 10.0)  # of the contacts, one after the other
 SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element
 NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept
+EXACT = 1e-2  # of the residual left by a correction: its tangent is as good as Newton's own
 PATIENCE = 8  # iterations within which the smallest correction must halve
 
 
@@ -45,11 +46,15 @@ class NewtonOptions:
     pressure_tolerance : float
         Largest accepted last correction of a nominal traction in contact over the highest one [-].
     max_iterations : int
+    reuse : bool
+        Begin with the tangent of the solve before, and keep it as long as a correction takes the residual away. What
+        a correction leaves of it is the size of the next one over its own.
     """
 
     tolerance: float = 1e-7
     pressure_tolerance: float = 1e-3
     max_iterations: int = 25
+    reuse: bool = False
 
 
 @dataclass
@@ -112,9 +117,13 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     if not math.isfinite(norm(residual)):
         report.outcome = Outcome.BAD_START
         return report
-    kept = False
+    kept, solver = False, problem.solver if options.reuse else None
+    left = 1.0 if solver is None else 0.0
     for report.iterations in range(1, options.max_iterations + 1):
-        kept = not kept and _nearly_there(report.corrections, NEARLY * options.tolerance * size)
+        if options.reuse:
+            kept = left <= EXACT
+        else:
+            kept = not kept and _nearly_there(report.corrections, NEARLY * options.tolerance * size)
         if not kept:
             solver = problem.tangent()
         if solver is None:
@@ -124,6 +133,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         if not report.linear_residual < RESIDUAL_TOLERANCE:
             report.outcome = Outcome.SINGULAR
             break
+        before = solver.scaled_norm(residual) if options.reuse else 0.0
         step, trial.data = 1.0, vector
         for _ in range(HALVINGS):
             vector.data = trial - step * correction
@@ -135,11 +145,12 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         else:
             report.outcome = Outcome.FOLDED
             break
+        left = min(1.0, solver.scaled_norm(residual) / before) if before > 0 else 1.0
         change = step * float(np.abs(correction.FV().NumPy()[u]).max())
         report.corrections.append(change)
         goal = options.tolerance * size
         # Far below the goal the displacement is exact, and pressures still moving do no work on it.
-        settled = change <= 1e-4 * goal or _settled(vector, correction, pressures, options)
+        settled = change <= 1e-4 * goal or _settled(vector, correction, pressures, options.pressure_tolerance, left)
         if step == 1.0 and change <= goal and settled:
             report.outcome = Outcome.CONVERGED
             break
@@ -149,12 +160,14 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     return report
 
 
-def _settled(vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice], options: NewtonOptions) -> bool:
-    """Whether the last correction left the tractions in contact alone: on a stiff body they follow the displacement."""
+def _settled(
+    vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice], tolerance: float, left: float
+) -> bool:
+    """Whether the last correction, times ``left``, leaves the tractions alone: on a stiff body they follow."""
     values, change = vector.FV().NumPy(), correction.FV().NumPy()
     highest = max((np.abs(values[p]).max() for p in parts), default=0.0)
     moved = max((np.abs(change[p]).max() for p in parts), default=0.0)
-    return bool(moved <= options.pressure_tolerance * highest or highest == 0.0)
+    return bool(left * moved <= tolerance * highest or highest == 0.0)
 
 
 def _nearly_there(corrections: list[float], mark: float) -> bool:

@@ -104,7 +104,7 @@ class Problem:
             self.parameters |= term.loads
         self._imbalance: ng.BaseVector | None = None
         self._matrix: Tangent | None = None
-        self._solver: DirectSolver | None = None
+        self.solver: DirectSolver | None = None
 
     def freeze_imbalance(self) -> None:
         """Take the present residual as a fictitious load, so that the present state is an equilibrium.
@@ -198,11 +198,13 @@ class Problem:
         return float((self.points.volumes * stress[..., 4] / self.points.radius).sum())
 
     def tangent(self) -> DirectSolver | None:
-        """Assemble and factorise the tangent at the present state; None if it is singular or not finite."""
+        """Assemble and factorise the tangent at the present state, kept as ``solver``; None if it is singular."""
         try:
             matrix = self.assemble()
         except NgException:
             return None
-        if self._solver is None:
-            self._solver = DirectSolver(matrix, self.free, symmetric=self.symmetric, stiff=self.part(DISPLACEMENT))
-        return self._solver if self._solver.factorise() else None
+        if self.solver is None:
+            self.solver = DirectSolver(matrix, self.free, symmetric=self.symmetric, stiff=self.part(DISPLACEMENT))
+        if not self.solver.factorise():
+            self.solver = None
+        return self.solver

@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from ngwear.effects.steady_memory import SteadyMemory
+from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, relax, settle
 from ngwear.errors import ConvergenceError
@@ -47,7 +48,7 @@ def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions 
     volumes = np.sqrt(problem.points.volumes)[..., None]
     memory.history = memory.follow(problem.points.strain(problem.state.vec.FV().NumPy()))
     for _ in range(options.max_rounds):
-        report = settle(problem, StepOptions(), work)
+        report = settle(problem, StepOptions(newton=NewtonOptions(reuse=bool(tried))), work)
         if not report.converged:
             work.add(relax(problem, StepOptions(first=0.25)))
         found = memory.follow(problem.points.strain(problem.state.vec.FV().NumPy()))

@@ -139,7 +139,8 @@ def _shapes(mesh: ng.Mesh, order: int, rule: ng.IntegrationRule) -> tuple[Index,
     space = ng.H1(mesh, order=order)
     elements = [ng.ElementId(ng.VOL, i) for i in range(mesh.ne)]
     unknowns = np.array([space.GetDofNrs(element) for element in elements], dtype=np.int64)
-    ranks = [tuple(np.argsort([v.nr for v in mesh[element].vertices])) for element in elements]
+    vertices = np.array([[v.nr for v in mesh[element].vertices] for element in elements])
+    ranks = [tuple(rank) for rank in np.argsort(vertices, axis=1).tolist()]
     kinds = {rank: i for i, rank in reversed(list(enumerate(ranks)))}
     values, slopes = {}, {}
     for rank, i in kinds.items():

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
+from ngwear.input.laws import read_friction
 from ngwear.input.material import read_arms, read_material
 from ngwear.input.tables import get, known, record, subtable, typed
 from ngwear.sliding.scene import Pin, PinMesh, PinScene
 
 
-def pin_scene(data: dict[str, Any], name: str) -> PinScene:
-    """Build the scene from the tables of its file.
+def pin_scene(data: dict[str, Any], name: str, folder: Path) -> PinScene:
+    """Build the scene from the tables of its file; files named in it start from ``folder``.
 
     Raises
     ------
@@ -25,6 +27,8 @@ def pin_scene(data: dict[str, Any], name: str) -> PinScene:
     own = {f.name: str(f.type) for f in fields(Pin) if f.name not in ("material", "series")}
     known("pin.", pin, set(own))
     sizes = {key: typed(f"pin.{key}", value, own[key]) for key, value in pin.items()}
+    if "friction" in sizes:
+        sizes["friction"] = read_friction("pin.friction", sizes["friction"], folder)
     program, save = subtable(data, "program"), data.get("save", {})
     known("program.", program, {"speeds"})
     known("save.", save, {"vtk"})

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.columns import read_columns
 from ngwear.errors import SceneError
 
 Array = NDArray[np.float64]
@@ -117,7 +116,7 @@ class Tension:
 
 def read_dma(path: Path | str, *, temperature: float | None = None) -> Dma:
     """Read columns ``frequency [Hz]``, ``storage modulus [MPa]`` and ``loss modulus [MPa]`` or ``loss factor [-]``."""
-    table = _read(path, ("frequency [Hz]", "storage modulus [MPa]"), ("loss modulus [MPa]", "loss factor [-]"))
+    table = read_columns(path, ("frequency [Hz]", "storage modulus [MPa]"), ("loss modulus [MPa]", "loss factor [-]"))
     loss = table.get("loss modulus [MPa]")
     if loss is None:
         loss = table["loss factor [-]"] * table["storage modulus [MPa]"]
@@ -126,39 +125,14 @@ def read_dma(path: Path | str, *, temperature: float | None = None) -> Dma:
 
 def read_relaxation(path: Path | str) -> Relaxation:
     """Read columns ``time [s]`` and ``modulus [MPa]``."""
-    table = _read(path, ("time [s]", "modulus [MPa]"))
+    table = read_columns(path, ("time [s]", "modulus [MPa]"))
     return Relaxation(table["time [s]"], table["modulus [MPa]"])
 
 
 def read_tension(path: Path | str) -> Tension:
     """Read columns ``stretch [-]`` and ``stress [MPa]`` (nominal)."""
-    table = _read(path, ("stretch [-]", "stress [MPa]"))
+    table = read_columns(path, ("stretch [-]", "stress [MPa]"))
     return Tension(table["stretch [-]"], table["stress [MPa]"])
-
-
-def _read(path: Path | str, needed: Sequence[str], one_of: Sequence[str] = ()) -> dict[str, Array]:
-    path = Path(path)
-    if not path.is_file():
-        raise SceneError("file", str(path), "there is no such file")
-    with path.open(newline="", encoding="utf-8-sig") as file:
-        rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
-    columns = {(name or "").strip() for name in rows[0]} if rows else set()
-    missing = [name for name in needed if name not in columns]
-    if one_of and not columns & set(one_of):
-        missing.append(" or ".join(one_of))
-    if missing:
-        raise SceneError(str(path), sorted(columns), f"columns missing: {missing}; name them with their units")
-    table: dict[str, Array] = {}
-    for name in columns & {*needed, *one_of}:
-        values = []
-        for number, row in enumerate(rows, start=2):
-            text = next(v for k, v in row.items() if (k or "").strip() == name)
-            try:
-                values.append(float(text))
-            except (TypeError, ValueError):
-                raise SceneError(f"{path}, line {number}, {name}", text, "must be a number (decimal point)") from None
-        table[name] = np.array(values)
-    return table
 
 
 def _rising(name: str, values: Array) -> None:

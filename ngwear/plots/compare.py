@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.plots.wear import COLOURS, ResultFile, Snapshot, read_result
+from ngwear.plots.wear import COLOURS
+from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

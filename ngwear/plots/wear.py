@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -10,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files import get_series
+from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,69 +17,6 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 COLOURS = ("#1b6ca8", "#d1495b", "#2e933c", "#8d6a9f", "#e0a030")
-
-
-@dataclass(frozen=True)
-class Snapshot:
-    """Outline and contact profiles at one solved stroke, as read from ``result.h5``."""
-
-    stroke: int
-    kind: str
-    outline: Array
-    profiles: dict[str, dict[str, Array]]
-    mesh: dict[str, Array]
-
-
-@dataclass(frozen=True)
-class ResultFile:
-    """Contents of ``result.h5``."""
-
-    scene: str
-    outline: Array
-    series: dict[str, Array]
-    snapshots: list[Snapshot]
-
-    @property
-    def kinds(self) -> list[str]:
-        """The strokes of the cycle by name, in their order."""
-        return list(dict.fromkeys(s.kind for s in self.snapshots))
-
-    def at(self, stroke: float, kind: str) -> Snapshot:
-        """The latest snapshot of a kind whose stroke is nearest."""
-        mine = [s for s in self.snapshots if s.kind == kind]
-        return min(reversed(mine), key=lambda s: abs(s.stroke - stroke))
-
-
-def read_result(folder: Path | str) -> ResultFile:
-    """Read a run's ``result.h5``.
-
-    Raises
-    ------
-    ResultError
-        If the file is missing or damaged.
-    """
-    import h5py
-
-    file = Path(folder) / "result.h5"
-    if not file.is_file():
-        raise ResultError(f"{file} does not exist: give the folder of a run that has ended (see ngwear run --out)")
-    try:
-        with h5py.File(file, "r") as h5:
-            snapshots = []
-            for group in h5["strokes"].values():
-                parts = {k: {n: d[()] for n, d in g.items()} for k, g in group.items() if isinstance(g, h5py.Group)}
-                snapshots.append(
-                    Snapshot(
-                        int(group.attrs["stroke"]),
-                        str(group.attrs["kind"]),
-                        group["outline [mm]"][()],
-                        {k: v for k, v in parts.items() if k != "mesh"},
-                        parts.get("mesh", {}),
-                    )
-                )
-            return ResultFile(str(h5.attrs["scene"]), h5["outline/points [mm]"][()], get_series(h5), snapshots)
-    except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
-        raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
 
 
 def plot(folder: Path | str) -> list[Path]:
@@ -93,10 +29,14 @@ def plot(folder: Path | str) -> list[Path]:
     """
     import matplotlib
 
+    from ngwear.plots.laws import has_laws, law_figure
+
     result = read_result(folder)
     if not result.snapshots:
         return []
     figures = {"mesh": mesh_figure, "profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
+    if has_laws(result):
+        figures["laws"] = law_figure
     written = []
     with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         for name, draw in figures.items():
@@ -113,9 +53,10 @@ def plot(folder: Path | str) -> list[Path]:
     return written
 
 
-def _new(
+def new_figure(
     rows: int, heights: tuple[float, ...], *, size: tuple[float, float], share: bool = True
 ) -> tuple[Figure, list[Axes]]:
+    """Figure with panels one above the other, of the given heights."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -137,9 +78,11 @@ def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
 def mesh_figure(result: ResultFile) -> Figure:
     """Deformed mesh at the first stroke of the cycle, over its contact pressure."""
     first = result.snapshots[0]
-    figure, (upper, lower) = _new(2, (3.2, 1), size=(8, 9))
+    points = first.mesh.get("points [mm]", result.outline)
+    wide, high = np.ptp(points, axis=0)
+    upper_share = 4 * min(max(high / wide, 0.2), 0.8)
+    figure, (upper, lower) = new_figure(2, (upper_share, 1), size=(8, 2.14 * (upper_share + 1)))
     if first.mesh:
-        points = first.mesh["points [mm]"]
         upper.triplot(points[:, 0], points[:, 1], first.mesh["triangles"], lw=0.3, color=COLOURS[0])
         low = points.min(axis=0)
         upper.set_xlim(low[0] - 0.1, points[:, 0].max() + 0.1)
@@ -177,7 +120,7 @@ def profile_figure(result: ResultFile) -> Figure:
     last = result.snapshots[-1].stroke
     strokes = sorted({0, last // 2, last})
     kinds = result.kinds
-    figure, axes = _new(1 + len(kinds), (1.2, *[1.0] * len(kinds)), size=(10, 3.2 * (1 + len(kinds))))
+    figure, axes = new_figure(1 + len(kinds), (1.2, *[1.0] * len(kinds)), size=(10, 3.2 * (1 + len(kinds))))
     window = _window(result)
     heights = []
     for colour, stroke in zip(COLOURS, strokes, strict=False):
@@ -185,14 +128,16 @@ def profile_figure(result: ResultFile) -> Figure:
         closed = np.vstack([shown.outline, shown.outline[:1]])
         axes[0].plot(closed[:, 0], closed[:, 1], color=colour, lw=1.0, label=f"after {shown.stroke} strokes")
         for profile in shown.profiles.values():
-            heights.append(profile["reference [mm]"][profile["pressure [MPa]"] > 0, 1])
+            touched = profile["reference [mm]"][profile["pressure [MPa]"] > 0]
+            apart = np.linalg.norm(touched[:, None] - shown.outline, axis=-1)
+            heights.append(shown.outline[apart.argmin(axis=1), 1])
         for panel, kind in zip(axes[1:], kinds, strict=True):
             snapshot = result.at(stroke, kind)
             _pressure(panel, snapshot, color=colour, lw=1.0, label=f"after {snapshot.stroke} strokes")
-    touched = np.concatenate(heights) if heights else np.zeros(0)
-    if len(touched):
-        room = max(np.ptp(touched), 1e-3)
-        axes[0].set_ylim(touched.min() - 0.3 * room, touched.max() + 0.3 * room)
+    height = np.concatenate(heights) if heights else np.zeros(0)
+    if len(height):
+        room = max(np.ptp(height), 1e-3)
+        axes[0].set_ylim(height.min() - 0.3 * room, height.max() + 0.3 * room)
     axes[0].set_xlim(*window)
     axes[0].set_ylabel("outline, unloaded: y [mm]")
     axes[0].set_title(f"{result.scene}: worn outline and contact pressure")
@@ -208,7 +153,7 @@ def peak_figure(result: ResultFile) -> Figure:
     """Pressure around the highest peak after 0, a quarter and a half of the strokes, for the first stroke kind."""
     kind = result.kinds[0]
     last = result.snapshots[-1].stroke
-    figure, (axes,) = _new(1, (1,), size=(7, 4.5))
+    figure, (axes,) = new_figure(1, (1,), size=(7, 4.5))
     centre, width = _highest(result.at(0, kind))
     for colour, stroke in zip(COLOURS, sorted({0, last // 4, last // 2, last}), strict=False):
         snapshot = result.at(stroke, kind)
@@ -244,7 +189,7 @@ def history_figure(result: ResultFile) -> Figure:
     """Depth with its error band, peak pressure and contact width over strokes."""
     series, kinds = result.series, result.kinds
     stroke = series["stroke [-]"]
-    figure, axes = _new(3, (1.3, 1, 1), size=(8, 9))
+    figure, axes = new_figure(3, (1.3, 1, 1), size=(8, 9))
     depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
     axes[0].plot(stroke, depth, color="k", lw=1.2, label="maximum")
     axes[0].fill_between(stroke, depth - error, depth + error, color="0.8", label="error estimate")

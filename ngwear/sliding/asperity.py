@@ -14,6 +14,7 @@ from ngwear.equilibrium.steady import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import Work, relax
 from ngwear.errors import SceneError
 from ngwear.fields.stream import StreamGrid
+from ngwear.geometry.sizing import SizeField
 from ngwear.materials import Hyperelastic, PronySeries
 from ngwear.sliding.block import Block, march, meshed_block
 
@@ -21,7 +22,9 @@ Array = NDArray[np.float64]
 WAKES = 4.0  # depth of a block over the length of its wake; a thinner one reads 6 % low and more
 LONGEST_WAKE = 100.0  # half lengths
 ROUGH, COARSE = 1e-2, 4  # tolerance and fineness of the solve that only looks for the contact's ends
-STEEPEST = 0.25  # growth of the elements below the contact
+NEAR, FAR = 0.25, 0.5  # steepest growth of the elements around the contact, and beyond
+AROUND = 8.0  # the contact: half lengths
+GRID = 0.48  # growth of the columns and rows along which the material flows, over that of the elements near by
 WIDE = 8.0  # a block that behaves like a half-plane, to 0.5 % of the friction: times the least one
 
 
@@ -163,7 +166,8 @@ def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: St
 
     What dissipates sits within V tau of the ends: elements of ``4 V tau / fineness`` there, with the half length l
     between ``l / 40`` and ``l / 8`` over fineness, and ``l / fineness`` elsewhere in the contact. Below it they grow
-    by ``2 / fineness`` of the distance: at V tau = l / 100 a quarter leaves the dissipation 3 % off.
+    by ``2 / fineness`` of the distance, at most a quarter near the contact and a half beyond: at V tau = l / 100 a
+    quarter leaves the dissipation 3 % off.
 
     Raises
     ------
@@ -177,14 +181,15 @@ def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: St
     half = asperity.half_length(speed)
     options = options or SteadyOptions()
     even = half / COARSE
-    block, memory = _block(asperity, depth, np.array([-half, half]), even, even, STEEPEST)
+    block, memory = _block(asperity, depth, np.array([-half, half]), even, even, FAR, FAR)
     block.indent(half**2 / (4 * asperity.radius))
     work = relax(block.problem)
     memory.set_speed(speed, half)
     work.add(solve_steady(block.problem, memory, replace(options, tolerance=max(options.tolerance, ROUGH))))
     half = 0.5 * float(np.ptp(block.ends))
     finest = float(np.clip(4 * speed * asperity.loss_time(speed), half / 40, half / 8)) / fineness
-    fine, memory = _block(asperity, depth, block.ends, half / fineness, finest, min(2 / fineness, STEEPEST))
+    near, far = np.minimum(2 / fineness, (NEAR, FAR))
+    fine, memory = _block(asperity, depth, block.ends, half / fineness, finest, near, far)
     (state,) = carry(block.problem, [block.problem.state.vec.FV().NumPy()], fine.problem)
     fine.problem.state.vec.FV().NumPy()[:] = state
     memory.set_speed(speed, half)
@@ -207,20 +212,32 @@ def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: St
 
 
 def _block(
-    asperity: Asperity, depth: float, ends: Array, middle: float, finest: float, grading: float
+    asperity: Asperity, depth: float, ends: Array, middle: float, finest: float, near: float, far: float
 ) -> tuple[Block, SteadyMemory]:
-    """Elements of ``finest`` at the contact's ends, ``middle`` in it, growing downwards by ``grading``."""
+    """Elements of ``finest`` at the contact's ends and ``middle`` in it, growing by ``near`` around, ``far`` beyond."""
     half, centre = 0.5 * np.ptp(ends), float(ends.mean())
     left, right = centre - 1.8 * half, centre + 1.8 * half
 
     def patch(x: float) -> float:
         return float(np.clip(0.2 * (np.abs(ends - x).min() - 6 * finest), finest, middle))
 
+    growth = GRID * near
     seeds = march(left, right, patch)
-    behind = -march(-left, depth, lambda x: max(middle, 0.08 * (x + left)))[:0:-1]
-    ahead = march(right, depth, lambda x: max(middle, 0.08 * (x - right)))[1:]
+    behind = -march(-left, depth, lambda x: max(middle, growth * (x + left)))[:0:-1]
+    ahead = march(right, depth, lambda x: max(middle, growth * (x - right)))[1:]
     columns = np.concatenate([behind, seeds, ahead])
-    rows = depth - march(0.0, depth, lambda y: max(finest / 2, 0.08 * y))[::-1]
-    body = meshed_block((-depth, depth), depth, seeds, np.array([patch(x) for x in seeds]), grading=grading)
+    rows = depth - march(0.0, depth, lambda y: max(finest / 2, growth * y))[::-1]
+    places = np.column_stack([seeds, np.full(len(seeds), depth)])
+    size = SizeField(places, np.array([patch(x) for x in seeds]), depth, grading=near)
+    if far > near:
+        places = np.vstack([places, *(_rings(x, depth, finest, AROUND * half) for x in ends)])
+    body = meshed_block((-depth, depth), depth, places, size(places), grading=far)
     memory = SteadyMemory(asperity.material, asperity.series, StreamGrid(columns, (rows,)))
     return Block.under(body, asperity.material, memory, radius=asperity.radius, load=asperity.load), memory
+
+
+def _rings(x: float, y: float, first: float, last: float) -> Array:
+    """Places on half circles below a point, from radius first to last [mm], shape (n, 2)."""
+    radii = np.geomspace(first, last, round(np.log(last / first) / 0.4))[:, None]
+    angles = np.pi * np.arange(0.5, 8) / 8
+    return np.stack([x + radii * np.cos(angles), y - radii * np.sin(angles)], axis=-1).reshape(-1, 2)

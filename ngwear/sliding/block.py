@@ -76,9 +76,8 @@ class Block:
         return np.sort([zones[0].start[0], zones[0].end[0]])
 
 
-def meshed_block(x: tuple[float, float], depth: float, seeds: Array, sizes: Array, *, grading: float) -> Body:
-    """Rectangle from y = 0 to ``depth``, with elements of the given sizes at places along its top [mm]."""
-    places = np.stack([seeds, np.full(len(seeds), depth)], axis=1)
+def meshed_block(x: tuple[float, float], depth: float, places: Array, sizes: Array, *, grading: float) -> Body:
+    """Rectangle from y = 0 to ``depth``, with elements of the given sizes at places of shape (n, 2) [mm]."""
     return Body(Contour.rectangle(x, (0.0, depth)), SizeField(places, sizes, depth / 4, grading=grading))
 
 

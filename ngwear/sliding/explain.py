@@ -24,8 +24,8 @@ def explain_pin(scene: PinScene) -> dict[str, Any]:
         "memory": f"{kept} of {len(series.times)} arms in the steady state of a pin that has been running for ever",
         "contact": f"ball of {pin.radius:g} mm under {pin.load:g} N",
     }
-    if pin.friction > 0:
-        effects["friction"] = f"full sliding, mu = {pin.friction:g}, in the direction of the track"
+    if pin.friction_law is not None:
+        effects["friction"] = f"full sliding, {pin.friction_law.words}, in the direction of the track"
     turn = 2 * math.pi * pin.track_radius
     return {
         "scene": scene.name,

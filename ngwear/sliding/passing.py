@@ -98,7 +98,8 @@ def slide_in_time(asperity: Asperity, speed: float, *, fineness: float = 12, wak
         return min(finest + GROWTH * max(track - window - x, 0.0), half / COARSEST)
 
     seeds = march(-1.8 * half, track + 1.8 * half, element)
-    body = meshed_block((-depth, depth + track), depth, seeds, np.array([element(x) for x in seeds]), grading=0.25)
+    top, sizes = np.column_stack([seeds, np.full(len(seeds), depth)]), np.array([element(x) for x in seeds])
+    body = meshed_block((-depth, depth + track), depth, top, sizes, grading=0.25)
     memory = Viscosity(asperity.material, asperity.series)
     block = Block.under(body, asperity.material, memory, radius=asperity.radius, load=asperity.load, slides=True)
     block.indent(half**2 / (4 * asperity.radius))

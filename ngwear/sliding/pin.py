@@ -84,9 +84,9 @@ class PinSlide:
 
 
 class PinStage:
-    """One mesh under the pin, fine in a disc of the sheet's top, and the problem on it."""
+    """One mesh under the pin, fine in a disc of the sheet's top, and the problem on it; friction first at ``speed``."""
 
-    def __init__(self, pin: Pin, mesh: PinMesh, disc: tuple[float, float, float]) -> None:
+    def __init__(self, pin: Pin, mesh: PinMesh, disc: tuple[float, float, float], *, speed: float = 0.0) -> None:
         self.pin, self.mesh = pin, mesh
         high = pin.thickness
         seeds, sizes = _seeds(disc, mesh.patch, high)
@@ -104,7 +104,8 @@ class PinStage:
         self.contact = PatchContact("pin", ("top",), ball, force_controlled=True, modulus=modulus)
         self.elasticity = Elasticity(pin.material)
         terms = [self.elasticity, self.contact]
-        self.friction = FullSliding(self.contact, pin.friction) if pin.friction > 0 else None
+        law = pin.friction_law
+        self.friction = FullSliding(self.contact, law, speed=speed) if law is not None else None
         if self.friction is not None:
             terms.append(self.friction)
         self.memory = None
@@ -141,6 +142,8 @@ class PinStage:
         self.problem.set_loads({"pin force [N]": self.pin.load})
         wavelength = self.pin.contact_radius  # a quarter of the pressure's own
         self.memory.set_speed(speed, wavelength)
+        if self.friction is not None:
+            self.friction.coefficient.set_state(0.0, speed)
         return solve_steady(self.problem, self.memory, options)
 
     def disc(self) -> tuple[float, float, float]:
@@ -163,7 +166,8 @@ class PinStage:
         surface = slip = 0.0
         if self.friction is not None:
             tangent = contact.surface.tangent(*contact.place(self.problem.fields))
-            surface, slip = pin.friction * contact.turning(tangent), pin.friction * contact.slipping(tangent)
+            traction = tuple(self.friction.mu() * t for t in tangent)
+            surface, slip = contact.turning(traction), contact.slipping(traction)
         return PinSlide(
             speed=speed,
             surface_friction=surface / pin.load,
@@ -215,11 +219,11 @@ def slide_pin(
     mesh, options = mesh or PinMesh(), options or SteadyOptions(tolerance=ROUGH)
     pin = replace(pin, series=mesh.folding(pin.series, speed).kept)
     clock = time.process_time()
-    coarse = PinStage(pin, coarsened(mesh), (0.0, 0.0, pin.contact_radius))
+    coarse = PinStage(pin, coarsened(mesh), (0.0, 0.0, pin.contact_radius), speed=speed)
     work = coarse.press()
     work.add(coarse.slide(speed, options))
     first = coarse.result(speed, work, time.process_time() - clock)
-    fine = PinStage(pin, mesh, coarse.disc())
+    fine = PinStage(pin, mesh, coarse.disc(), speed=speed)
     carry_solid(coarse.problem, fine.problem)
     work = fine.slide(speed, options)
     if vtk is not None:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from ngwear.errors import SceneError
+from ngwear.laws import FrictionLaw, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries
 
 KIND = "pin on plate"
@@ -31,8 +32,8 @@ class Pin:
         [mm]; infinite for a straight track.
     sheet_radius : float
         Outer radius of the sheet [mm]; with a circular track its centre is the track's.
-    friction : float
-        Coefficient of surface friction [-].
+    friction : FrictionLaw or float
+        Coefficient of surface friction [-]; a law by lubrication is refused, as steady sliding has no distance.
 
     Raises
     ------
@@ -47,14 +48,16 @@ class Pin:
     thickness: float = 4.0
     track_radius: float = 16.5
     sheet_radius: float = 30.0
-    friction: float = 0.06
+    friction: FrictionLaw | float = 0.06
 
     def __post_init__(self) -> None:
         for name in ("radius", "load", "thickness", "track_radius", "sheet_radius"):
             if not getattr(self, name) > 0:
                 raise SceneError(f"pin.{name}", getattr(self, name), "must be greater than 0")
-        if not self.friction >= 0:
+        if not isinstance(self.friction, FrictionLaw) and not self.friction >= 0:
             raise SceneError("pin.friction", self.friction, "must be at least 0")
+        if self.friction_law is not None and self.friction_law.breaks:
+            raise SceneError("pin.friction", self.friction, "steady sliding has no distance: give the state's own mu")
         needed = self.track_radius + 2 * self.contact_radius
         if math.isfinite(self.track_radius) and needed > self.sheet_radius:
             raise SceneError(
@@ -63,6 +66,11 @@ class Pin:
                 f"the track leaves the sheet: with a contact of about {self.contact_radius:.2g} mm around a track of "
                 f"{self.track_radius:g} mm take {needed:.3g} mm or more",
             )
+
+    @property
+    def friction_law(self) -> FrictionLaw | None:
+        """The law of the surface friction; None without any."""
+        return law_of(self.friction)
 
     @property
     def contact_radius(self) -> float:

@@ -4,15 +4,19 @@ Problem, closed form and scaling as in ``hunter``. ``sliding.passing`` marches o
 the exact integration of the arms, and shares with the direct steady solve only the equilibrium: neither the frame of
 the slider, nor the transport along rows, nor the iteration for the history.
 
-Both are timed in this one run (processor time). The direct solve takes the coarsest of four meshes whose friction is at
+Both are timed in this one run (processor time). The direct solve takes the coarsest of six meshes whose friction is at
 least as close to the closed form as the march's, so that a ratio of 3 means three times cheaper at equal error or
 better. The march is dear where the contact is long against V tau (fine elements, a contact hard to find) or the wake
-long against the contact (a long track). In between it needs some twenty steps only: at 5, 20, 32.1 and 50 mm/s the
-ratio is 2.1, 1.4, 2.0 and 1.6, and these checks stand as failed; at 200 mm/s it is 3.1. The ratio over all speeds is
-what a friction curve costs.
+long against the contact (a long track). In between it needs some twenty steps only. Measured in two runs, from 1
+to 2000 mm/s: 17, 5.5 to 6.6, 3.5, 4.2, 4.2 to 5.2, 4.0 and 156 to 211; over all speeds 35, what a curve costs.
+
+Equal is the error of the friction alone. Where the march is off by 1 % (20 to 50 mm/s) the direct solve makes do with
+two elements in the middle of the contact and fine ones at its ends, and its half length is 2 to 4 % off.
 """
 
 from __future__ import annotations
+
+import numpy as np
 
 from ngwear.materials import PronySeries
 from ngwear.sliding.asperity import Asperity, Slide, slide
@@ -21,16 +25,20 @@ from ngwear.verify.base import Check
 from ngwear.verify.hunter import ARM, LOAD, LONG_TERM, RADIUS, RUBBER, SCALE, SPEEDS, TIME, closed_form
 
 FINENESS = 8.0  # of the march
-DIRECT = (4.0, 6.0, 8.0, 12.0)  # of the direct solve
+DIRECT = (1.0, 2.0, 4.0, 6.0, 8.0, 12.0)  # of the direct solve
 
 
-def at_least_as_close(asperity: Asperity, speed: float, wanted: float, allowed: float) -> Slide:
-    """The direct solve on the coarsest mesh whose friction is off by no more than allowed [-], else on the finest."""
+def at_least_as_close(asperity: Asperity, speed: float, wanted: float, allowed: float) -> tuple[Slide, float]:
+    """The direct solve on the coarsest mesh whose friction is off by no more than allowed [-], else on the finest.
+
+    Also its processor time [s], the median of three: one of half a second is noisy.
+    """
     for fineness in DIRECT:
         found = slide(asperity, speed, fineness=fineness)
         if abs(found.friction - wanted) <= allowed:
             break
-    return found
+    again = [slide(asperity, speed, fineness=fineness).cpu_seconds for _ in range(2)]
+    return found, float(np.median([found.cpu_seconds, *again]))
 
 
 def run() -> list[Check]:
@@ -47,15 +55,14 @@ def run() -> list[Check]:
         exact = closed_form(speed)["friction"] / SCALE
         passage = slide_in_time(asperity, speed, fineness=FINENESS)
         allowed = abs(passage.steady - exact)
-        direct = at_least_as_close(asperity, speed, exact, allowed)
-        marched, solved = marched + passage.cpu_seconds, solved + direct.cpu_seconds
-        seconds = passage.cpu_seconds + direct.cpu_seconds
+        direct, cost = at_least_as_close(asperity, speed, exact, allowed)
+        marched, solved = marched + passage.cpu_seconds, solved + cost
+        seconds = passage.cpu_seconds + cost
         friction, at = passage.steady * SCALE, f"at {speed:g} mm/s"
         check(f"friction coefficient in time {at} [-]", friction, exact * SCALE, 0.02, passage.cpu_seconds, "near")
         off = abs(direct.friction - exact)
         quantity = f"relative error of the direct solve, at most that in time, {at} [-]"
         check(quantity, off / exact, allowed / exact, 0.0, seconds, "below")
-        ratio = passage.cpu_seconds / direct.cpu_seconds
-        check(f"CPU seconds in time over direct {at} [-]", ratio, 3.0, 0.0, seconds, "above")
+        check(f"CPU seconds in time over direct {at} [-]", passage.cpu_seconds / cost, 3.0, 0.0, seconds, "above")
     check("CPU seconds in time over direct, all speeds [-]", marched / solved, 3.0, 0.0, marched + solved, "above")
     return checks

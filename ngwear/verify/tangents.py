@@ -30,6 +30,7 @@ from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Soli
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.sheet import Sheet
+from ngwear.laws import ByPressure
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
 from ngwear.surfaces import Cylinder, Plane, RigidSurface, Sphere
 from ngwear.verify.base import Check, Stopwatch
@@ -43,6 +44,7 @@ MATERIALS = {
     "Mooney-Rivlin": MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
 }
 ARMS = PronySeries((3.0, 2.0), (0.1, 1.0))
+FRICTION = {"": 0.8, " by pressure": ByPressure(light=0.9, limit=0.1, pressure=0.8, exponent=0.7)}
 SECTION = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
 SOLID = {"solid": Solid()}
 KINEMATICS = SECTION | SOLID
@@ -125,16 +127,14 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
             yield f"contact, {name}, {how}, {kin}", kinematics, [_contact(surface, forced, wear)]
         for forced in (False, True):
             how = "force" if forced else "displacement"
-            contact = _contact(surface, forced, 0.0)
-            yield (
-                f"full sliding, {name}, {how}, {kin}",
-                kinematics,
-                [_UnknownsOf(contact), FullSliding(contact, 0.8)],
-            )
-            contact = _contact(surface, forced, 0.0)
-            sticks = StickSlip(contact, 0.8)
-            sticks.travel.Set(0.02)
-            yield f"stick and slip, {name}, {how}, {kin}", kinematics, [contact, sticks]
+            for by, law in FRICTION.items():
+                contact = _contact(surface, forced, 0.0)
+                terms = [_UnknownsOf(contact), FullSliding(contact, law)]
+                yield f"full sliding{by}, {name}, {how}, {kin}", kinematics, terms
+                contact = _contact(surface, forced, 0.0)
+                sticks = StickSlip(contact, law)
+                sticks.travel.Set(0.02)
+                yield f"stick and slip{by}, {name}, {how}, {kin}", kinematics, [contact, sticks]
     for kin, kinematics in SECTION.items():
         fluid = FluidPressure(("right", "top"), ("right",), ())
         fluid.pressure.Set(2.0)

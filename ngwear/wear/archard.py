@@ -57,6 +57,18 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
     return share * (amount.sum() / share.sum()) if share.sum() > 0 else share
 
 
+def at_points(contour: Contour, profile: ContactProfile, values: Array) -> Array:
+    """Nodal values of a contact at the contour points, zero off its edges."""
+    n = len(contour)
+    out = np.zeros(n)
+    for i, j in profile.edges:
+        a, b = profile.t[i], profile.t[j]
+        b = b if b > a else b + n
+        inside = np.arange(math.ceil(a - 1e-9), math.floor(b + 1e-9) + 1)
+        out[inside % n] = np.interp(inside, [a, b], [values[i], values[j]])
+    return out
+
+
 def critical_distance(element: float, specific_wear_rate: float, plane_strain_modulus: float) -> float:
     """Sliding distance beyond which the explicit step is unstable [mm]: ``4 h / (pi k E*)``.
 

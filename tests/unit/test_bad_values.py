@@ -58,10 +58,20 @@ def replaced(data, path, value):
     return data
 
 
+LAWS = (
+    (
+        "friction = 0.1",
+        'friction = { law = "product", factors = [{ law = "lubrication", distance = [0, 9], coefficient = [0.1, 1] }, '
+        '{ law = "stribeck", boundary = 1, full = 0.5, speed = 9 }, { law = "pressure", light = 1, pressure = 2 }] }',
+    ),
+    ("specific_wear_rate = 1.0e-3", "specific_wear_rate = { distance = [0, 9], rate = [0, 1e-3] }"),
+)
+
+
 def scene_data():
     import tomllib
 
-    return tomllib.loads(edited(SHEET_SCENE, REMEMBERS) + "[save]\nstrokes = [2]\nvtk = false\n")
+    return tomllib.loads(edited(SHEET_SCENE, (*REMEMBERS, *LAWS)) + "[save]\nstrokes = [2]\nvtk = false\n")
 
 
 PLACES = list(places(scene_data()))

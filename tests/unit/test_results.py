@@ -12,7 +12,8 @@ import pytest
 
 from ngwear.errors import ResultError
 from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
-from ngwear.plots.wear import plot, read_result
+from ngwear.plots.wear import plot
+from ngwear.result_file import read_result
 from ngwear.results import Folder, Recorder, depths, fingerprint
 from ngwear.scenefile import read_scene
 

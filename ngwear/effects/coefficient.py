@@ -1,0 +1,48 @@
+"""A law of friction inside a form."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import ngsolve as ng
+
+from ngwear.errors import SceneError
+from ngwear.laws import Constant, FrictionLaw
+
+
+class Coefficient:
+    """Coefficient of friction that a term builds its form with: ``coefficient(pressure)``.
+
+    What the law makes of distance and speed are parameters of the form, which ``set_state`` changes between solves. A
+    law that is a number stays one.
+
+    Parameters
+    ----------
+    contact : str
+        Its name, for complaints.
+    law : FrictionLaw or float
+    speed : float or None
+        Of the sliding at first [mm/s], at the distance 0.
+
+    Raises
+    ------
+    SceneError
+        For a negative coefficient.
+    """
+
+    def __init__(self, contact: str, law: FrictionLaw | float, *, speed: float | None = None) -> None:
+        if not isinstance(law, FrictionLaw) and not law >= 0:
+            raise SceneError(f"contact {contact}.friction", law, "must be at least 0")
+        self.law = law if isinstance(law, FrictionLaw) else Constant(value=law)
+        self._held = [ng.Parameter(number) for number in self.law.held(0.0, speed)]
+
+    def set_state(self, distance: float, speed: float | None = None) -> None:
+        """Go to a sliding distance [mm] and a speed [mm/s]; None if the law needs no speed."""
+        for parameter, number in zip(self._held, self.law.held(distance, speed), strict=True):
+            parameter.Set(number)
+
+    def __call__(self, pressure: Any) -> Any:
+        """Coefficient mu [-] under a Cauchy pressure [MPa], one below 0 taken as 0: a number or a field."""
+        if not self.law.depends_on_pressure:
+            return self.law.of_pressure(self._held, 0.0)
+        return self.law.of_pressure(self._held, ng.IfPos(pressure, pressure, 0.0))

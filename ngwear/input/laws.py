@@ -1,0 +1,83 @@
+"""The values ``friction`` and ``specific_wear_rate`` of a contact: a number, or a table that says which law."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from ngwear.errors import SceneError
+from ngwear.input.tables import get, known, record, typed
+from ngwear.laws import ByPressure, FrictionLaw, Lubrication, Product, Stribeck, WearRate
+from ngwear.laws.fit import fit_lubrication
+
+_LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
+
+
+def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
+    """A number, or a law of a table with ``law`` and the law's values; files start from ``folder``.
+
+    ``law = "lubrication"`` takes the rows ``distance`` and ``coefficient``, a ``file`` that holds them, or a file whose
+    four phases are to be ``fitted``; ``law = "product"`` a list ``factors`` of such tables.
+
+    Raises
+    ------
+    SceneError
+        For an unknown law or key, or a value out of range.
+    """
+    if not isinstance(value, dict):
+        return typed(place, value, "float")
+    kind = get(value, place, "law")
+    if not isinstance(kind, str) or kind not in _LAWS:
+        raise SceneError(f"{place}.law", kind, f"must be one of {list(_LAWS)}")
+    values = {key: inner for key, inner in value.items() if key not in ("law", "source")}
+    if kind == "product":
+        return _product(place, values, folder)
+    if kind == "lubrication" and "fitted" in values:
+        return _of_file(place, values, "fitted", folder, lambda path: fit_lubrication(path).law)
+    return _table(place, values, folder, _LAWS[kind])
+
+
+def read_wear_rate(place: str, value: Any, folder: Path) -> WearRate | float:
+    """A number, or a table with the rows ``distance`` and ``rate`` or a ``file`` that holds them.
+
+    Raises
+    ------
+    SceneError
+        For an unknown key or a value out of range.
+    """
+    if not isinstance(value, dict):
+        return typed(place, value, "float")
+    return _table(place, {key: inner for key, inner in value.items() if key != "source"}, folder, WearRate)
+
+
+def _product(place: str, values: dict[str, Any], folder: Path) -> Product:
+    known(f"{place}.", values, {"factors"})
+    factors = get(values, place, "factors")
+    if not isinstance(factors, list) or not all(isinstance(factor, dict) for factor in factors):
+        raise SceneError(f"{place}.factors", factors, "must be a list of laws, each a table with its law")
+    laws = tuple(read_friction(f"{place}.factors[{i}]", factor, folder) for i, factor in enumerate(factors))
+    return _placed(f"{place}.", lambda: Product(factors=laws))
+
+
+def _table(place: str, values: dict[str, Any], folder: Path, law: Any) -> Any:
+    if "file" in values and hasattr(law, "read"):
+        return _of_file(place, values, "file", folder, law.read)
+    return _placed(f"{place}.", lambda: record(law, place, values))
+
+
+def _of_file(place: str, values: dict[str, Any], key: str, folder: Path, read: Callable[[Path], Any]) -> Any:
+    known(f"{place}.", values, {key})
+    path = folder / typed(f"{place}.{key}", values[key], "str")
+    return _placed(f"{place}.{key}, ", lambda: read(path))
+
+
+def _placed(before: str, build: Callable[[], Any]) -> Any:
+    """Say of a law's complaint in which contact and file it is."""
+    try:
+        return build()
+    except SceneError as error:
+        if error.place.startswith(before):
+            raise
+        inner = error.place.removeprefix("friction.").removeprefix("specific_wear_rate.")
+        raise SceneError(f"{before}{inner}", error.value, error.remedy) from None

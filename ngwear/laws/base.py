@@ -1,0 +1,88 @@
+"""What every law of friction offers."""
+
+from __future__ import annotations
+
+import abc
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import pairwise
+from typing import Any
+
+from ngwear.errors import SceneError
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A coefficient over the sliding distance that bends at ``breaks`` [mm] and is linear, or nearly so, between."""
+
+    value: Callable[[float], float]
+    breaks: tuple[float, ...]
+
+    def _places(self, start: float, end: float) -> list[float]:
+        return [start, *(s for s in self.breaks if start < s < end), end]
+
+    def extremes(self, start: float, end: float) -> tuple[float, float]:
+        """Lowest and highest value between two distances [mm]."""
+        values = [self.value(s) for s in self._places(start, end)]
+        return min(values), max(values)
+
+    def mean(self, start: float, end: float) -> float:
+        """Mean value between two distances [mm], start < end."""
+        parts = pairwise(self._places(start, end))
+        return sum(0.5 * (self.value(a) + self.value(b)) * (b - a) for a, b in parts) / (end - start)
+
+
+class FrictionLaw(abc.ABC):
+    """Coefficient of friction mu(s, v, p) over sliding distance, speed and Cauchy pressure.
+
+    Distance and speed stand still while a stroke is solved, the pressure does not. So a law is taken in two steps:
+    ``held`` makes numbers of distance and speed, ``of_pressure`` makes mu of these and of a pressure, in plain
+    arithmetic, so that numbers, arrays and NGSolve's coefficient functions may come in.
+
+    Attributes
+    ----------
+    depends_on_speed, depends_on_pressure : bool
+    breaks : tuple of float
+        Sliding distances at which the law bends [mm]: its extremes lie there, or at the ends of a range. Empty for a
+        law that does not know the distance.
+    """
+
+    depends_on_speed: bool = False
+    depends_on_pressure: bool = False
+    breaks: tuple[float, ...] = ()
+
+    @abc.abstractmethod
+    def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
+        """What the law makes of a sliding distance [mm] and a speed [mm/s]; None for a law that needs no speed."""
+
+    def of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
+        """Coefficient mu [-] of what ``held`` gave and a Cauchy pressure, >= 0 [MPa]."""
+        return held[0]
+
+    def mu(self, distance: float, speed: float | None = None, pressure: Any = 0.0) -> Any:
+        """Coefficient of friction [-], with the shape of the pressure [MPa] if the law depends on it."""
+        return self.of_pressure(self.held(distance, speed), pressure)
+
+    def curve(self, speed: float | None = None) -> Curve:
+        """Coefficient over the distance, at a speed [mm/s] and under the lightest pressure."""
+        return Curve(partial(self.mu, speed=speed), self.breaks)
+
+    @property
+    @abc.abstractmethod
+    def words(self) -> str:
+        """The law in a line."""
+
+
+def require_number(place: str, value: float, *, above: float | None = None) -> None:
+    """Refuse what is not finite and at least 0, or, if given, not greater than ``above``.
+
+    Raises
+    ------
+    SceneError
+    """
+    if above is not None and not above < value < math.inf:
+        raise SceneError(place, value, f"must be finite and greater than {above:g}")
+    if not 0 <= value < math.inf:
+        raise SceneError(place, value, "must be at least 0, and finite")

@@ -1,0 +1,41 @@
+"""Friction that depends on nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ngwear.laws.base import FrictionLaw, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constant(FrictionLaw):
+    """Coulomb's mu [-], >= 0. A scene's ``friction`` that is a number means this law.
+
+    Raises
+    ------
+    SceneError
+        For a negative coefficient.
+    """
+
+    value: float
+
+    def __post_init__(self) -> None:
+        require_number("friction", self.value)
+
+    def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
+        return ()
+
+    def of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
+        return self.value
+
+    @property
+    def words(self) -> str:
+        return f"mu = {self.value:g}"
+
+
+def law_of(friction: FrictionLaw | float) -> FrictionLaw | None:
+    """Return the law that a scene's ``friction`` means; None without any."""
+    law = friction if isinstance(friction, FrictionLaw) else Constant(value=friction)
+    return None if law == Constant(value=0.0) else law

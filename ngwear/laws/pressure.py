@@ -1,0 +1,60 @@
+"""Friction that falls with pressure, as rubber's does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ngwear.laws.base import FrictionLaw, require_number
+
+
+@dataclass(frozen=True, kw_only=True)
+class ByPressure(FrictionLaw):
+    """``mu = limit + (light - limit) / (1 + p / pressure)^exponent``: adhesion in a real contact that fills up.
+
+    With ``exponent = 1`` and ``limit = 0`` it is Thirion's law, 1/mu linear in p (Rev. Gen. Caoutch. 23 (1946) 101);
+    with 1/3 it goes over, far above ``pressure``, to the p^(-1/3) of elastic asperities (Schallamach, Proc. Phys. Soc.
+    B 65 (1952) 657). At p = 0 it stays finite, and so the traction mu p begins in proportion to p.
+
+    Valid for dry rubber and moderate pressures (Thirion measured below 1 MPa); neglects speed and temperature.
+
+    Parameters
+    ----------
+    light : float
+        mu under the lightest pressure [-], >= 0.
+    limit : float
+        mu under the highest pressure [-], >= 0.
+    pressure : float
+        Scale of the Cauchy pressure [MPa], > 0.
+    exponent : float
+        [-], > 0.
+
+    Raises
+    ------
+    SceneError
+        For a value out of range.
+    """
+
+    light: float
+    pressure: float
+    limit: float = 0.0
+    exponent: float = 1.0
+
+    depends_on_pressure = True
+
+    def __post_init__(self) -> None:
+        require_number("friction.light", self.light)
+        require_number("friction.limit", self.limit)
+        require_number("friction.pressure", self.pressure, above=0.0)
+        require_number("friction.exponent", self.exponent, above=0.0)
+
+    def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
+        return ()
+
+    def of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
+        return self.limit + (self.light - self.limit) * (1 + pressure / self.pressure) ** -self.exponent
+
+    @property
+    def words(self) -> str:
+        return f"by pressure, from {self.light:g} at 0 to {self.limit:g}, scale {self.pressure:g} MPa"

@@ -1,0 +1,60 @@
+"""Laws that act together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ngwear.errors import SceneError
+from ngwear.laws.base import FrictionLaw
+
+
+@dataclass(frozen=True, kw_only=True)
+class Product(FrictionLaw):
+    """Product of laws, such as one by lubrication times one by pressure that begins at 1.
+
+    Assumes that each acts as if the others stood still, which holds about one state only.
+
+    Parameters
+    ----------
+    factors : tuple of FrictionLaw
+        At least two.
+
+    Raises
+    ------
+    SceneError
+        For fewer than two factors.
+    """
+
+    factors: tuple[FrictionLaw, ...]
+
+    def __post_init__(self) -> None:
+        if len(self.factors) < 2:
+            raise SceneError("friction.factors", len(self.factors), "a product needs at least two laws")
+
+    @property
+    def depends_on_speed(self) -> bool:
+        return any(law.depends_on_speed for law in self.factors)
+
+    @property
+    def depends_on_pressure(self) -> bool:
+        return any(law.depends_on_pressure for law in self.factors)
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        return tuple(sorted({s for law in self.factors for s in law.breaks}))
+
+    def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
+        return tuple(number for law in self.factors for number in law.held(distance, speed))
+
+    def of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
+        product, rest = 1.0, list(held)
+        for law in self.factors:
+            mine = len(law.held(0.0, 1.0))
+            product, rest = product * law.of_pressure(rest[:mine], pressure), rest[mine:]
+        return product
+
+    @property
+    def words(self) -> str:
+        return " times ".join(law.words for law in self.factors)
