@@ -26,8 +26,9 @@ class Contact(UnilateralContact):
     ``"NAME slide [mm]"``; all else as in ``UnilateralContact``.
 
     A surface that is worn itself (``counter``, also an attribute that may be replaced between solves) stands back by
-    the depth of its profile. Each solve takes that depth where the state that it starts from touches, and the normal
-    of the unworn surface: the profile must be shallow and change little along the tangential displacement of a solve.
+    the depth of its profile, which has moved along the surface's tangent by ``turned`` [mm]. Each solve takes that
+    depth where the state that it starts from touches, and the normal of the unworn surface: the profile must be shallow
+    and change little along the tangential displacement of a solve.
     """
 
     def __init__(
@@ -42,7 +43,7 @@ class Contact(UnilateralContact):
         modulus: float,
     ) -> None:
         super().__init__(name, edges, surface, force_controlled=force_controlled, modulus=modulus)
-        self.counter = counter
+        self.counter, self.turned = counter, 0.0
         self.slid: ng.Parameter | None = None
         if slides:
             self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
@@ -110,17 +111,21 @@ class Contact(UnilateralContact):
     def along(self) -> Array:
         """Coordinates of both ends of each mesh edge along the surface, in its own frame; shape (m, 2) [mm]."""
         place = [self._sample(ng.CF(p)) for p in self.place(self._state)]
-        return self.surface.along(*place)
+        return self.surface.along(*place) + self.turned
 
     def imprint(self) -> tuple[Array, Array]:
         """Where along the surface each mesh edge touches it, and the pressure on it; each of shape (m, 2) [mm], [MPa].
 
-        The pressure is linear along each mesh edge, and its integral over the surface the sum of the profile's loads.
+        The pressure is linear along each mesh edge; its integral over the surface is the sum of the profile's loads, in
+        axisymmetry per circumference there.
         """
         profile, ends = self.profile(), self.along()
         line = self._body.outline.t[self.positions]
         stretch = np.abs(np.diff(ends, axis=1)) / self._body.contour.arc_lengths(*line.T)[:, None]
-        return ends, (profile.load / profile.weight)[profile.edges] / stretch
+        pressure = profile.load / profile.weight
+        if self._kinematics.axisymmetric:
+            pressure = pressure * profile.reference[:, 1] / profile.place[:, 1]
+        return ends, pressure[profile.edges] / stretch
 
     def end_places(self) -> Array:
         """Reference coordinates of both ends of each mesh edge, in the order of the outline; shape (m, 2, 2)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,6 +45,11 @@ class RigidSurface(abc.ABC):
             For a surface that is no curve.
         """
         raise SceneError("surface", type(self).__name__, "has no coordinate along it, and so no worn profile")
+
+    @property
+    def length(self) -> float:
+        """Once around a closed curve [mm]; infinite for an open one."""
+        return math.inf
 
     def tangents(self, *place: Any) -> tuple[tuple[Any, ...], ...]:
         """Unit vectors along the surface: the tangent, and in three dimensions the normal's cross product with it."""

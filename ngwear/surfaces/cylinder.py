@@ -53,5 +53,9 @@ class Cylinder(RigidSurface):
         return self.radius * np.arctan2(y * px - x * py, x * px + y * py)
 
     @property
+    def length(self) -> float:
+        return 2 * math.pi * self.radius
+
+    @property
     def approach(self) -> tuple[float, float]:
         return self.push
