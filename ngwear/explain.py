@@ -37,6 +37,11 @@ def explain(scene: Scene) -> dict[str, Any]:
     if rate > 0:
         present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
     present |= {f"wear rate at '{c.name}'": _wear_in_words(scene, c) for c in scene.contacts if c.wear_rate.varies}
+    present |= {
+        f"wear of the surface of '{c.name}'": f"k = {c.counter_wear_rate:g} mm²/N, a profile that moves with it"
+        for c in scene.contacts
+        if c.counter_wear_rate > 0
+    }
     if scene.prony is not None:
         present["memory"] = _memory_in_words(scene)
     left_out = ["heat", "adhesion", "inertia", "fluid film"]

@@ -93,6 +93,9 @@ class Recorder:
             row[f"{contact} width at the peak [mm]"] = 0.0 if highest is None else highest.width
             row[f"{contact} contact width [mm]"] = sum(z.width for z in zones)
             row[f"{contact} contact zones [-]"] = len(zones)
+        for name, counter in report.counters.items():
+            row[f"{name} counter-surface depth [mm]"] = float(counter.depth.max())
+            row[f"{name} counter-surface worn area [mm^2]"] = counter.area
         for name, force in report.forces.items():
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
         for name, heat in report.heats.items():
@@ -121,6 +124,9 @@ class Recorder:
             }
             for name, p in report.contacts.items()
         }
+        for name, counter in report.counters.items():
+            profiles[name]["counter-surface coordinate [mm]"] = counter.along
+            profiles[name]["counter-surface depth [mm]"] = counter.depth
         kind = self.scene.program.cycle[report.phase].name
         return Snapshot(report.last_stroke, kind, report.contour.points, profiles, mesh)
 

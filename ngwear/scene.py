@@ -36,6 +36,8 @@ class ContactSpec:
         stroke; left to ``Scene.may_stick`` unless given.
     specific_wear_rate : WearRate or float
         Archard's k [mm²/N], >= 0: depth per nominal pressure and sliding distance.
+    counter_wear_rate : float
+        That of the surface, which keeps a worn profile of its own [mm²/N], >= 0; only where the part wears too.
     force : float or None
         Press the surface on with this force [N, or N/mm in plane strain] instead of by its place.
     refine : bool
@@ -49,6 +51,7 @@ class ContactSpec:
     slides: bool = True
     sticks: bool | None = None
     specific_wear_rate: WearRate | float = 0.0
+    counter_wear_rate: float = 0.0
     force: float | None = None
     refine: bool = False
 
@@ -60,6 +63,10 @@ class ContactSpec:
         if not isinstance(self.specific_wear_rate, WearRate):
             rate = self.specific_wear_rate
             _require(rate >= 0, f"{place}.specific_wear_rate", rate, "must be at least 0 mm²/N")
+        counter = self.counter_wear_rate
+        _require(counter >= 0, f"{place}.counter_wear_rate", counter, "must be at least 0 mm²/N")
+        remedy = "give the part a specific_wear_rate as well: its error chooses the jumps"
+        _require(counter == 0 or self.wears, f"{place}.counter_wear_rate", counter, remedy)
         _require(
             self.slides or self.sticks is not False,
             f"{place}.sticks",

@@ -19,6 +19,7 @@ from ngwear.fields.background import Background
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.scene import ContactSpec, Scene, Stroke
+from ngwear.surfaces import WornProfile
 
 Array = NDArray[np.float64]
 
@@ -44,7 +45,12 @@ class Stage:
         self.elasticity = Elasticity(rubber, order=scene.accuracy.order, pointwise=scene.accuracy.pointwise)
         self.contacts = {
             spec.name: Contact(
-                spec.name, spec.edges, spec.surface, modulus=modulus, force_controlled=spec.force is not None
+                spec.name,
+                spec.edges,
+                spec.surface,
+                modulus=modulus,
+                force_controlled=spec.force is not None,
+                counter=WornProfile.of(spec.surface, scene.accuracy.patch) if spec.counter_wear_rate > 0 else None,
             )
             for spec in scene.contacts
         }

@@ -14,6 +14,7 @@ from ngwear.equilibrium.stepping import Work
 from ngwear.fields.background import Background
 from ngwear.geometry.contour import Contour
 from ngwear.stage import Stage
+from ngwear.surfaces import WornProfile
 from ngwear.wear.control import JumpControl
 
 Array = NDArray[np.float64]
@@ -78,6 +79,7 @@ class State:
     ledger: Ledger = field(default_factory=Ledger)
     work: Work = field(default_factory=Work)
     depth_error: Array | None = None
+    counters: dict[str, WornProfile] = field(default_factory=dict)
     memory: CycleMemory | None = None
     reports: list[StrokeReport] = field(default_factory=list)
 
@@ -122,6 +124,8 @@ class StrokeReport:
     coefficients, wear_rates : dict of str to float
         Mean friction coefficient under the pressure [-] and mean k of the strokes [mm²/N], of the contacts whose law is
         no constant.
+    counters : dict of str to WornProfile
+        Worn profiles of the surfaces that keep one, after the stroke's wear.
     leaks : bool
         Whether the fluid meets no contact.
     contour : Contour
@@ -139,6 +143,7 @@ class StrokeReport:
     heats: dict[str, float]
     coefficients: dict[str, float]
     wear_rates: dict[str, float]
+    counters: dict[str, WornProfile]
     leaks: bool
     contour: Contour
     ledger: Ledger

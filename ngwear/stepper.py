@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear import counter_wear
 from ngwear.cycle_memory import CycleMemory
 from ngwear.drift import steady_cycles
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
@@ -83,6 +84,7 @@ class Stepper:
         stage = Stage(scene, Body(contour, mounting_field(scene)))
         control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
         state = State(stage, [], control)
+        state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         problem = stage.problem
         phases = len(scene.program.cycle)
         state.work.add(self._mount(stage))
@@ -231,6 +233,7 @@ class Stepper:
             "memory": copy(state.memory),
             "reports": state.reports,
             "ledger": replace(state.ledger),
+            "counters": state.counters,
             "depth_error": None if state.depth_error is None else state.depth_error.copy(),
         }
 
@@ -260,6 +263,7 @@ class Stepper:
                     last_stroke=state.strokes,
                     repeats=repeats,
                     contour=state.contour,
+                    counters=state.counters,
                     ledger=replace(state.ledger),
                 )
             )
@@ -311,6 +315,7 @@ class Stepper:
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
         stage.set_shares(phase.shares)
+        counter_wear.place(stage, state.counters, index, sliding)
         if state.memory is not None:
             state.memory.enter(stage.memory, plan, index)
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
@@ -343,6 +348,7 @@ class Stepper:
             heats={name: friction.heat(sliding.travel) for name, friction in stage.frictions.items()},
             coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
             wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
+            counters=state.counters,
             leaks=stage.fluid is not None and stage.fluid.leaks,
             contour=state.contour,
             ledger=replace(state.ledger),
@@ -373,6 +379,7 @@ class Stepper:
     def _wear(self, state: State, index: int, sliding: Strokes) -> bool:
         """Take the stroke's worn area off the outline; return whether its error is known."""
         stage, contour, stroke = state.stage, state.contour, self.scene.program.cycle[index]
+        state.counters = counter_wear.worn(stage, state.counters, index, sliding)
         share = np.zeros(len(contour))
         half = np.zeros(len(contour))
         pressure = np.zeros((len(self.scene.contacts), len(contour)))

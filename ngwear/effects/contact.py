@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import ngsolve as ng
@@ -13,7 +14,7 @@ from ngwear.effects.base import DISPLACEMENT, Unknowns
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.body import Body
-from ngwear.surfaces import RigidSurface
+from ngwear.surfaces import RigidSurface, WornProfile
 
 Array = NDArray[np.float64]
 
@@ -23,6 +24,11 @@ class Contact(UnilateralContact):
 
     A surface that slides (``slides=True``) also moves across its approach, turned by +90 degrees, by the load
     ``"NAME slide [mm]"``; all else as in ``UnilateralContact``.
+
+    A surface that is worn itself (``counter``, also an attribute that may be replaced between solves) stands back by
+    the depth of its profile, which has moved along the surface's tangent by ``turned`` [mm]. Each solve takes that
+    depth where the state that it starts from touches, and the normal of the unworn surface: the profile must be shallow
+    and change little along the tangential displacement of a solve.
     """
 
     def __init__(
@@ -33,9 +39,11 @@ class Contact(UnilateralContact):
         *,
         force_controlled: bool = False,
         slides: bool = False,
+        counter: WornProfile | None = None,
         modulus: float,
     ) -> None:
         super().__init__(name, edges, surface, force_controlled=force_controlled, modulus=modulus)
+        self.counter, self.turned = counter, 0.0
         self.slid: ng.Parameter | None = None
         if slides:
             self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
@@ -50,7 +58,13 @@ class Contact(UnilateralContact):
     def pressure_space(self, body: Body) -> ng.FESpace:
         return ng.Compress(ng.SurfaceL2(body.mesh, order=1, definedon=body.boundary(self.edges)))
 
+    def gap(self, fields: dict[str, Any]) -> Any:
+        gap = super().gap(fields)
+        return gap if self.counter is None else gap + self._stands_back
+
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        if self.counter is not None:
+            self._stands_back = ng.GridFunction(unknowns.state[self.pressure_name].space)
         super().add_to(form, unknowns)
         self._lay_samples(unknowns.body, self._region)
 
@@ -94,6 +108,25 @@ class Contact(UnilateralContact):
             gap=self._sample(self.gap(self._state)),
         )
 
+    def along(self) -> Array:
+        """Coordinates of both ends of each mesh edge along the surface, in its own frame; shape (m, 2) [mm]."""
+        place = [self._sample(ng.CF(p)) for p in self.place(self._state)]
+        return self.surface.along(*place) + self.turned
+
+    def imprint(self) -> tuple[Array, Array]:
+        """Where along the surface each mesh edge touches it, and the pressure on it; each of shape (m, 2) [mm], [MPa].
+
+        The pressure is linear along each mesh edge; its integral over the surface is the sum of the profile's loads, in
+        axisymmetry per circumference there.
+        """
+        profile, ends = self.profile(), self.along()
+        line = self._body.outline.t[self.positions]
+        stretch = np.abs(np.diff(ends, axis=1)) / self._body.contour.arc_lengths(*line.T)[:, None]
+        pressure = profile.load / profile.weight
+        if self._kinematics.axisymmetric:
+            pressure = pressure * profile.reference[:, 1] / profile.place[:, 1]
+        return ends, pressure[profile.edges] / stretch
+
     def end_places(self) -> Array:
         """Reference coordinates of both ends of each mesh edge, in the order of the outline; shape (m, 2, 2)."""
         return self._body.contour.at(self._body.outline.t[self.positions].ravel()).reshape(-1, 2, 2)
@@ -104,9 +137,22 @@ class Contact(UnilateralContact):
 
     def pressure_vector(self, ends: Array) -> Array:
         """Unknowns of a nominal pressure given at both ends of each mesh edge; ``ends`` of shape (m, 2) [MPa]."""
-        field = self._state[self.pressure_name]
+        field = ng.GridFunction(self._state[self.pressure_name].space)
+        self._interpolate(field, ends)
+        return field.vec.FV().NumPy().copy()
+
+    def _interpolate(self, field: ng.GridFunction, ends: Array) -> None:
+        """Give a field of the pressure's space its values at both ends of each mesh edge, shape (m, 2)."""
+        dofs, shapes = self._end_shapes
         vector = field.vec.FV().NumPy()
-        keep = vector.copy()
+        vector[:] = 0.0
+        vector[dofs] = np.linalg.solve(shapes, ends[..., None])[..., 0]
+
+    @cached_property
+    def _end_shapes(self) -> tuple[NDArray[np.intp], Array]:
+        """Pressure unknowns of each mesh edge, shape (m, 2), and their shape functions at its ends, (m, 2, 2)."""
+        field = ng.GridFunction(self._state[self.pressure_name].space)
+        vector = field.vec.FV().NumPy()
         elements = self._body.outline.element[self.positions]
         dofs = np.array([field.space.GetDofNrs(ng.ElementId(ng.BND, int(nr))) for nr in elements])
         shapes = []
@@ -114,10 +160,7 @@ class Contact(UnilateralContact):
             vector[:] = 0.0
             vector[dofs[:, k]] = 1.0
             shapes.append(self._sample(field))
-        out = np.zeros_like(keep)
-        out[dofs] = np.linalg.solve(np.stack(shapes, axis=-1), ends[..., None])[..., 0]
-        vector[:] = keep
-        return out
+        return dofs, np.stack(shapes, axis=-1)
 
     def sample_middles(self, field: ng.CoefficientFunction) -> Array:
         """Mean at both ends of each mesh edge, in the order of the outline; shape (m,)."""
@@ -147,6 +190,8 @@ class Contact(UnilateralContact):
 
     def prepare(self) -> None:
         super().prepare()
+        if self.counter is not None:
+            self._interpolate(self._stands_back, self.counter.at(self.along()))
         if self.force_controlled:
             self._follow()
 

@@ -4,5 +4,6 @@ from ngwear.surfaces.base import RigidSurface
 from ngwear.surfaces.cylinder import Cylinder
 from ngwear.surfaces.plane import Plane
 from ngwear.surfaces.sphere import Sphere
+from ngwear.surfaces.worn import WornProfile
 
-__all__ = ["Cylinder", "Plane", "RigidSurface", "Sphere"]
+__all__ = ["Cylinder", "Plane", "RigidSurface", "Sphere", "WornProfile"]

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import abc
+import math
 from dataclasses import dataclass
 from typing import Any
+
+from ngwear.errors import SceneError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +35,21 @@ class RigidSurface(abc.ABC):
         """Unit tangent: the normal turned clockwise, so that a normal (0, 1) has the tangent (1, 0)."""
         nx, ny = self.normal(*place)
         return ny, -1 * nx
+
+    def along(self, *place: Any) -> Any:
+        """Coordinate along the surface of the foot of a place [mm], growing along the approach turned by +90 degrees.
+
+        Raises
+        ------
+        SceneError
+            For a surface that is no curve.
+        """
+        raise SceneError("surface", type(self).__name__, "has no coordinate along it, and so no worn profile")
+
+    @property
+    def length(self) -> float:
+        """Once around a closed curve [mm]; infinite for an open one."""
+        return math.inf
 
     def tangents(self, *place: Any) -> tuple[tuple[Any, ...], ...]:
         """Unit vectors along the surface: the tangent, and in three dimensions the normal's cross product with it."""

@@ -6,6 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from ngwear.errors import SceneError
 from ngwear.surfaces.base import RigidSurface
 
@@ -43,6 +45,16 @@ class Cylinder(RigidSurface):
     def normal(self, x: Any, y: Any) -> tuple[Any, Any]:
         distance = self._distance(x, y)
         return (x - self.centre[0]) / distance, (y - self.centre[1]) / distance
+
+    def along(self, x: Any, y: Any) -> Any:
+        """Arc from the foremost point [mm], for floats and arrays."""
+        px, py = self.push
+        x, y = x - self.centre[0], y - self.centre[1]
+        return self.radius * np.arctan2(y * px - x * py, x * px + y * py)
+
+    @property
+    def length(self) -> float:
+        return 2 * math.pi * self.radius
 
     @property
     def approach(self) -> tuple[float, float]:

@@ -54,6 +54,10 @@ class Plane(RigidSurface):
     def normal(self, x: Any, y: Any) -> tuple[Any, Any]:
         return self.normal_vector
 
+    def along(self, x: Any, y: Any) -> Any:
+        nx, ny = self.normal_vector
+        return (y - self.point[1]) * nx - (x - self.point[0]) * ny
+
     @property
     def approach(self) -> tuple[float, float]:
         return self.normal_vector

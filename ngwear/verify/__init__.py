@@ -30,6 +30,7 @@ CASES: dict[str, str] = {
     "ring": "ngwear.verify.ring",
     "block_on_ring": "ngwear.verify.block_on_ring",
     "worn_cylinder": "ngwear.verify.worn_cylinder",
+    "fretting": "ngwear.verify.fretting",
     "measured_profile": "ngwear.verify.measured_profile",
     "stability_pair": "ngwear.verify.stability_pair",
     "lubrication": "ngwear.verify.lubrication",
