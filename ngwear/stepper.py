@@ -114,7 +114,7 @@ class Stepper:
         for spec in self.scene.contacts:
             contact = state.stage.contacts[spec.name]
             pressed = any(p.vector[problem.part(contact.pressure_name)].max() > 0 for p in state.phases)
-            if spec.specific_wear_rate > 0 and not pressed:
+            if spec.wears and not pressed:
                 raise SceneError(
                     f"contact '{spec.name}'.surface",
                     spec.surface,
