@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.plots.wear import COLOURS
+from ngwear.plots.style import COLOURS
 from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:

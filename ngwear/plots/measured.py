@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ngwear.errors import ResultError
-from ngwear.plots.wear import COLOURS
+from ngwear.plots.style import COLOURS
 from ngwear.profiles.comparison import Comparison
 
 if TYPE_CHECKING:

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from ngwear.errors import ResultError
-from ngwear.plots.wear import COLOURS, worn_edge
+from ngwear.plots.style import COLOURS
+from ngwear.plots.wear import worn_edge
 from ngwear.result_file import read_result
 
 

@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
+from ngwear.plots.laws import has_laws, law_figure
+from ngwear.plots.style import COLOURS, new_figure
 from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
@@ -16,7 +18,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
-COLOURS = ("#1b6ca8", "#d1495b", "#2e933c", "#8d6a9f", "#e0a030")
 
 
 def plot(folder: Path | str) -> list[Path]:
@@ -28,8 +29,6 @@ def plot(folder: Path | str) -> list[Path]:
         If the result cannot be read or the pictures cannot be written.
     """
     import matplotlib
-
-    from ngwear.plots.laws import has_laws, law_figure
 
     result = read_result(folder)
     if not result.snapshots:
@@ -53,19 +52,6 @@ def plot(folder: Path | str) -> list[Path]:
                 raise ResultError(f"{path} cannot be written: {error.strerror}") from error
             written.append(path)
     return written
-
-
-def new_figure(
-    rows: int, heights: tuple[float, ...], *, size: tuple[float, float], share: bool = True
-) -> tuple[Figure, list[Axes]]:
-    """Figure with panels one above the other, of the given heights."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=size, layout="constrained")
-    FigureCanvasAgg(figure)
-    axes = figure.subplots(rows, 1, sharex=share, height_ratios=heights, squeeze=False)[:, 0]
-    return figure, list(axes)
 
 
 def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
