@@ -94,6 +94,9 @@ class Contact(UnilateralContact):
             gap=self._sample(self.gap(self._state)),
         )
 
+    def peak(self) -> float:
+        return float(self.profile().pressure.max(initial=0.0))
+
     def end_places(self) -> Array:
         """Reference coordinates of both ends of each mesh edge, in the order of the outline; shape (m, 2, 2)."""
         return self._body.contour.at(self._body.outline.t[self.positions].ravel()).reshape(-1, 2, 2)

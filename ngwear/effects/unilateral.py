@@ -92,6 +92,10 @@ class UnilateralContact(Term):
     def lengths(self, body: Meshed) -> ng.GridFunction:
         """Length of each surface element as it was made [mm]; constant on it, so that P adds up to what g asks."""
 
+    @abc.abstractmethod
+    def peak(self) -> float:
+        """Highest Cauchy pressure of the present state [MPa]."""
+
     def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
         spaces = {self.pressure_name: self.pressure_space(body)}
         if self.force_controlled:
