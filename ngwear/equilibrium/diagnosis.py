@@ -10,8 +10,10 @@ from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
 
 FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by one, below which nothing holds it
-WRINKLING = 0.544  # least principal stretch that a free surface bears (Biot, Appl. Sci. Res. A 12 (1963) 168)
-NEAR = 1.2  # times that: how far the rubber's last equilibrium may be from it
+# Least principal stretch of a free surface in plane strain: creases (Hong et al., Appl. Phys. Lett. 95 (2009) 111901)
+# and wrinkles (Biot, Appl. Sci. Res. A 12 (1963) 168).
+CREASING, WRINKLING = 0.65, 0.544
+NEAR = 1.03  # times the first: how far from it the last equilibrium before a failure may be
 
 
 def diagnosis(problem: Problem) -> str:
@@ -78,7 +80,7 @@ def _rigid_motions(problem: Problem) -> list[tuple[str, Array]]:
 
 
 def _unstable_surface(problem: Problem) -> str:
-    """Friction that compresses the surface until it would wrinkle."""
+    """Friction that compresses the surface until it creases."""
     rubbing = [t for t in problem.terms if getattr(t, "coefficient", 0.0) > 0]
     if not rubbing or problem.points is None:
         return ""
@@ -87,14 +89,14 @@ def _unstable_surface(problem: Problem) -> str:
     gradient = strain.reshape(*strain.shape[:-1], dim, dim) + np.eye(dim)
     least = np.linalg.svd(gradient, compute_uv=False)[..., -1]
     worst = np.unravel_index(least.argmin(), least.shape)
-    if least[worst] > NEAR * WRINKLING:
+    if least[worst] > NEAR * CREASING:
         return ""
     place = ", ".join(f"{x:.4g}" for x in problem.points.places[worst])
     friction = max(rubbing, key=lambda term: term.contact.peak())
     contact, peak = friction.contact, friction.contact.peak()
     return (
         f"friction of {friction.coefficient:g} under p/G = {peak / contact.modulus:.2g} at contact '{contact.name}' "
-        f"compresses the rubber at ({place}) to {least[worst]:.2g} of its length; surfaces wrinkle or crease near "
-        f"{WRINKLING}, and no smooth equilibrium is left: control the force instead of the place and load it in "
-        "smaller steps, lower the friction, or take a stiffer rubber"
+        f"compresses the rubber at ({place}) to {least[worst]:.2g} of its length; a surface creases from {CREASING} and "
+        f"wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: control the force instead of the place "
+        "and load it in smaller steps, lower the friction, or take a stiffer rubber"
     )
