@@ -96,7 +96,7 @@ def _unstable_surface(problem: Problem) -> str:
     contact, peak = friction.contact, friction.contact.peak()
     return (
         f"friction of {friction.coefficient:g} under p/G = {peak / contact.modulus:.2g} at contact '{contact.name}' "
-        f"compresses the rubber at ({place}) to {least[worst]:.2g} of its length; a surface creases from {CREASING} and "
-        f"wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: control the force instead of the place "
-        "and load it in smaller steps, lower the friction, or take a stiffer rubber"
+        f"compresses the rubber at ({place}) to {least[worst]:.2g} of its length; a surface creases from {CREASING} "
+        f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: control the force instead of the "
+        "place and load it in smaller steps, lower the friction, or take a stiffer rubber"
     )

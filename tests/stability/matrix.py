@@ -32,7 +32,7 @@ def main(words: list[str]) -> None:
         try:
             outcome, findings = case.judge()
         except Exception as error:
-            outcome, findings = f"FAILS: {error}", []
+            outcome, findings = "fails" if case.fails else f"FAILS: {error}", []
         seconds = time.process_time() - start
         print(
             f"{case.family}: {case.label}: {outcome} ({seconds:.1f} s)  "
@@ -40,7 +40,7 @@ def main(words: list[str]) -> None:
             file=sys.stderr,
         )
         families.setdefault(case.family, []).append((case, outcome, findings))
-    print("| what is hard | cases | outcome | worst measured |\n|---|---|---|---|")
+    print("| hard case | how hard | outcome | worst measured |\n|---|---|---|---|")
     for family, rows in families.items():
         labels = "; ".join(case.label for case, *_ in rows)
         counts = [f"{sum(o == kind for _, o, _ in rows)} {kind}" for kind in dict.fromkeys(o for _, o, _ in rows)]

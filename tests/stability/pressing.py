@@ -154,7 +154,7 @@ def in_units(length, modulus) -> list[Finding]:
 
 def let_go(mu, law) -> list[Finding]:
     """Pressed, released in one step to a gap of 1 mm, pressed again in one step."""
-    problem, contact, friction = sheet(mu=mu, law=law, forced=False, patch=0.1)
+    problem, contact, _ = sheet(mu=mu, law=law, forced=False, patch=0.1)
     if law is FullSliding and mu:
         problem.set_loads({SLIP: 1.0})
     found, forces = [], []
