@@ -1,5 +1,6 @@
 """Rings on rods and under pressure, a part that nothing holds, the shipped seal's pressure turned round at once."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -14,12 +15,17 @@ from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
+from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.materials import MooneyRivlin
+from ngwear.refinement import mounting_field
+from ngwear.stage import Stage
+from ngwear.stepper import Stepper
 from ngwear.surfaces import Plane
 from ngwear.verify import ring
 from ngwear.verify.builders import mean, meshed
 from ngwear.verify.closed_forms import expanding_pressure
+from ngwear.verify.rod_seal import imbalance, shipped_scene
 
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1.5e6)
 PRESS = "fluid pressure [MPa]"
@@ -52,6 +58,29 @@ def turned_round(first, second) -> list[Finding]:
     return [*found, near("bore back again", seen[2], seen[0], 1e-6)]
 
 
+def seal_turned_round(pressure_on) -> list[Finding]:
+    """The shipped seal, mounted: its outward stroke, and the inward one under pressure, each in a single step."""
+    scene = shipped_scene()
+    outward, inward = scene.program.cycle
+    inward = replace(inward, pressure=pressure_on)
+    stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
+    Stepper(scene)._mount(stage)
+    found, lips = [], []
+    for stroke in (outward, inward, outward, inward):
+        advance(stage.problem, stage.stroke_loads(stroke), StepOptions(first=1.0))
+        rod = stage.contacts["rod"]
+        found += [
+            *body(stage.problem),
+            *pressure(rod),
+            Finding("forces out of balance", imbalance(stage.forces()), 1e-6),
+        ]
+        found.append(Finding("leaks", float(stage.fluid.leaks), 0.0))
+        lips.append(abs(float(rod.force()[1])))
+    found.append(near("force on the rod, outward again", lips[2], lips[0], 1e-4))
+    found.append(near("force on the rod, inward again", lips[3], lips[1], 1e-4))
+    return found
+
+
 def unheld(held, mu) -> list[Finding]:
     """A block under a lid that a force presses on, and something that does not hold it."""
     body_ = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), 0.5)
@@ -72,6 +101,8 @@ def cases() -> list[Case]:
     found += [
         Case("pressure turned round in a step", f"{a:g} to {b:g} MPa", partial(turned_round, a, b)) for a, b in turns
     ]
+    seal = "the shipped seal turned round in a step"
+    found += [Case(seal, f"0 to {p:g} MPa and friction reversed", partial(seal_turned_round, p)) for p in (0.5, 2.0)]
     bottom = [Support(("bottom",))]
     found += [
         Case(
