@@ -183,14 +183,14 @@ class Stage:
         mine = contour.on(spec.edges)
         points = contour.points[mine | np.roll(mine, 1)]
 
-        def gaps(travel: float) -> Array:
-            return np.sort([float(spec.surface.gap(x - travel * ax, y - travel * ay)) for x, y in points])
-
         def smallest(travel: float) -> float:
-            return float(gaps(travel)[0])
+            return min(float(spec.surface.gap(x - travel * ax, y - travel * ay)) for x, y in points)
 
-        near = gaps(0.0)[:3]  # enough to press on the mesh edges beside the nearest point
-        bite = min(float(near[-1] - near[0]), 0.1 * self.scene.accuracy.mounting)
+        # Enough to press on the mesh edges beside the nearest point; another ridge may be as high.
+        here = np.array([float(spec.surface.gap(x, y)) for x, y in points])
+        first = int(here.argmin())
+        beside = here[max(first - 1, 0) : first + 2]
+        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.mounting)
         bite += 1e-6 * float(contour.lengths.min())
         travel, reach = 0.0, 10.0 * float(np.ptp(contour.points, axis=0).max())
         for _ in range(500):  # the gap is a distance: so far the surface can go without passing the place

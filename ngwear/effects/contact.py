@@ -108,6 +108,9 @@ class Contact(UnilateralContact):
             gap=self._sample(self.gap(self._state)),
         )
 
+    def peak(self) -> float:
+        return float(self.profile().pressure.max(initial=0.0))
+
     def along(self) -> Array:
         """Coordinates of both ends of each mesh edge along the surface, in its own frame; shape (m, 2) [mm]."""
         place = [self._sample(ng.CF(p)) for p in self.place(self._state)]

@@ -78,6 +78,9 @@ class PatchContact(UnilateralContact):
         nominal = self._state[self.pressure_name].vec.FV().NumPy()[self._dofs]
         return Faces(deformed[:, :3], centres, np.maximum(nominal, 0.0) / stretch)
 
+    def peak(self) -> float:
+        return float(self.faces().pressure.max(initial=0.0))
+
     def at(self, places: Array) -> tuple[Array, Array]:
         """Gaps [mm] and deformed coordinates at places of the reference faces, both (n, 3) [mm]."""
         points = self._body.mesh(*places.T, ng.BND)

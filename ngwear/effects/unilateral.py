@@ -103,6 +103,10 @@ class UnilateralContact(Term):
     def sample_middles(self, field: ng.CoefficientFunction) -> Array:
         """Values of a field in the middle of each surface element."""
 
+    @abc.abstractmethod
+    def peak(self) -> float:
+        """Highest Cauchy pressure of the present state [MPa]."""
+
     def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
         spaces = {self.pressure_name: self.pressure_space(body)}
         if self.force_controlled:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from ngwear.equilibrium.diagnosis import diagnosis
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
@@ -122,9 +123,8 @@ def advance(
             step /= 2
             if step < options.smallest:
                 problem.set_loads({name: start[name] + done * (target[name] - start[name]) for name in target})
-                raise ConvergenceError(
-                    f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}", report
-                )
+                way = f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}"
+                raise ConvergenceError(way + diagnosis(problem), report)
             continue
         problem.commit()
         rate.data = (1 / step) * (vector - last)

@@ -1,0 +1,103 @@
+"""Why a walk found no equilibrium, measured on the last one: nothing holds the part, or its surface is unstable."""
+
+from __future__ import annotations
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT, Array
+from ngwear.effects.friction import Friction
+from ngwear.effects.unilateral import UnilateralContact
+from ngwear.equilibrium.problem import Problem
+
+FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by one, below which nothing holds it
+# Least principal stretch of a free surface in plane strain: creases (Hong et al., Appl. Phys. Lett. 95 (2009) 111901)
+# and wrinkles (Biot, Appl. Sci. Res. A 12 (1963) 168).
+CREASING, WRINKLING = 0.65, 0.544
+NEAR = 1.03  # times the first: how far from it the last equilibrium before a failure may be
+
+
+def diagnosis(problem: Problem) -> str:
+    """Sentences for the message of a walk that gave up; empty if nothing stands out."""
+    found = [_unheld(problem), _unstable_surface(problem)]
+    return "".join(f"\n{sentence}" for sentence in found if sentence)
+
+
+def _unheld(problem: Problem) -> str:
+    """Rigid motions of the part, and surfaces under force, that no support, contact or stress resists."""
+    matrix, vector = problem.assemble(), problem.state.vec
+    held = ~np.fromiter(problem.free, dtype=bool, count=len(vector))
+    diagonal = np.abs(np.array([matrix[i, i] for i in range(len(vector))]))
+    contacts = [t for t in problem.terms if isinstance(t, UnilateralContact) and t.force_controlled]
+    motion, product = vector.CreateVector(), vector.CreateVector()
+
+    def free(values: Array) -> bool:
+        if np.abs(values[held]).max(initial=0.0) > 1e-9 * np.abs(values).max():
+            return False
+        motion.FV().NumPy()[:] = values
+        product.data = matrix * motion
+        return abs(values @ product.FV().NumPy()) <= FREE * (diagonal @ values**2)
+
+    travels = []
+    for contact in contacts:
+        values = np.zeros(len(vector))
+        values[problem.part(contact.travel_name)] = 1.0
+        if diagonal @ values == 0 or free(values):
+            travels.append(f"surface '{contact.name}' under force touches nothing")
+    directions = []
+    for name, values in _rigid_motions(problem):
+        along = values.copy()  # the surfaces under force go with the part
+        for contact in contacts:
+            i = "xyz".find(name[-1])
+            along[problem.part(contact.travel_name)] = contact.surface.approach[i] if name[:-1] == "along " else 0.0
+        if free(values) or free(along):
+            directions.append(name)
+    if directions:
+        travels.append(f"nothing holds the part {' and '.join(directions)}: add a support or a contact that does")
+    return "; ".join(travels)
+
+
+def _rigid_motions(problem: Problem) -> list[tuple[str, Array]]:
+    """Name and vector of unknowns of each rigid motion of the part as it stands."""
+    u = problem.fields[DISPLACEMENT]
+    dim = problem.body.mesh.dim
+    places = [c + u[i] for i, c in enumerate((ng.x, ng.y, ng.z)[:dim])]
+    motions: list[tuple[str, list]] = []
+    for i in range(1 if problem.kinematics.axisymmetric else dim):
+        motions.append((f"along {'xyz'[i]}", [1.0 if k == i else 0.0 for k in range(dim)]))
+    if not problem.kinematics.axisymmetric:
+        for axis, (i, j) in zip("zxy", [(0, 1), (1, 2), (2, 0)][: 1 if dim == 2 else 3], strict=False):
+            turn = [ng.CF(0.0)] * dim
+            turn[i], turn[j] = -places[j], places[i]
+            motions.append((f"against turning about {axis}", turn))
+    found = []
+    field = ng.GridFunction(u.space)
+    for name, motion in motions:
+        field.Set(ng.CF(tuple(motion)))
+        values = np.zeros(len(problem.state.vec))
+        values[problem.part(DISPLACEMENT)] = field.vec.FV().NumPy()
+        found.append((name, values))
+    return found
+
+
+def _unstable_surface(problem: Problem) -> str:
+    """Friction that compresses the surface until it creases."""
+    rubbing = [t for t in problem.terms if isinstance(t, Friction)]
+    if not rubbing or problem.points is None:
+        return ""
+    dim = problem.body.mesh.dim
+    strain = problem.points.strain(problem.state.vec.FV().NumPy())[..., : dim * dim]
+    gradient = strain.reshape(*strain.shape[:-1], dim, dim) + np.eye(dim)
+    least = np.linalg.svd(gradient, compute_uv=False)[..., -1]
+    worst = np.unravel_index(least.argmin(), least.shape)
+    if least[worst] > NEAR * CREASING:
+        return ""
+    place = ", ".join(f"{x:.4g}" for x in problem.points.places[worst])
+    friction = max(rubbing, key=lambda term: term.contact.peak())
+    contact, peak = friction.contact, friction.contact.peak()
+    return (
+        f"friction of {friction.mean():.3g} under p/G = {peak / contact.modulus:.2g} at contact '{contact.name}' "
+        f"compresses the rubber at ({place}) to {least[worst]:.2g} of its length; a surface creases from {CREASING} "
+        f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: control the force instead of the "
+        "place and load it in smaller steps, lower the friction, or take a stiffer rubber"
+    )

@@ -1,0 +1,128 @@
+"""Rings on rods and under pressure, a part that nothing holds, the shipped seal's pressure turned round at once."""
+
+from dataclasses import replace
+from functools import partial
+
+import numpy as np
+from case import Case
+from physics import Finding, body, near, pressure
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.contact import Contact
+from ngwear.effects.elasticity import Elasticity
+from ngwear.effects.fluid_pressure import FluidPressure
+from ngwear.effects.friction import FullSliding
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.stepping import StepOptions, advance
+from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
+from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
+from ngwear.materials import MooneyRivlin
+from ngwear.refinement import mounting_field
+from ngwear.stage import Stage
+from ngwear.stepper import Stepper
+from ngwear.surfaces import Plane
+from ngwear.verify import ring
+from ngwear.verify.builders import mean, meshed
+from ngwear.verify.closed_forms import expanding_pressure
+from ngwear.verify.rod_seal import imbalance, shipped_scene
+
+RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1.5e6)
+PRESS = "fluid pressure [MPa]"
+
+
+def on_rod(interference, mu) -> list[Finding]:
+    """A ring on a rod that expands its bore; the closed form has no friction."""
+    rod = Contact("rod", ("bottom",), Plane.rod(2 * ring.INNER), modulus=RUBBER.shear_modulus)
+    terms = [Elasticity(RUBBER), rod] + ([FullSliding(rod, mu)] if mu else [])
+    outline = Contour.rectangle((0.0, ring.LENGTH), (ring.INNER, ring.OUTER))
+    held = Support(("left", "right"), y=False)
+    problem = Problem(meshed(outline, ring.SIZE), Axisymmetric(), terms, supports=[held])
+    grown = interference * ring.INNER
+    advance(problem, {"rod approach [mm]": grown})
+    expected = expanding_pressure(RUBBER.shear_modulus, ring.INNER, ring.OUTER, ring.INNER + grown)
+    found = float(rod.force()[1]) / (2 * np.pi * (ring.INNER + grown) * ring.LENGTH)
+    return [*body(problem), *pressure(rod), near("pressure on the rod", found, expected, 1e-4)]
+
+
+def turned_round(first, second) -> list[Finding]:
+    """Pressure in a ring's bore that goes to another one, through zero if it pulls, in one step and back."""
+    problem = ring._problem(RUBBER, FluidPressure(("bottom",), ("bottom",), ()))
+    found, seen = [], []
+    for load in (first, second, first):
+        advance(problem, {PRESS: load}, StepOptions(first=1.0))
+        seen.append(mean(problem.fields[DISPLACEMENT][1], problem.body, "bottom"))
+        found += body(problem) if load else [Finding("bore left [mm]", abs(seen[-1]), 1e-9)]
+        expected = expanding_pressure(RUBBER.shear_modulus, ring.INNER, ring.OUTER, ring.INNER + seen[-1])
+        found.append(Finding("error of the pressure over G", abs(expected - load) / RUBBER.shear_modulus, 1e-3))
+    return [*found, near("bore back again", seen[2], seen[0], 1e-6)]
+
+
+def seal_turned_round(pressure_on) -> list[Finding]:
+    """The shipped seal, mounted: its outward stroke, and the inward one under pressure, each in a single step."""
+    scene = shipped_scene()
+    outward, inward = scene.program.cycle
+    inward = replace(inward, pressure=pressure_on)
+    stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
+    Stepper(scene)._mount(stage)
+    found, lips = [], []
+    for stroke in (outward, inward, outward, inward):
+        advance(stage.problem, stage.stroke_loads(stroke), StepOptions(first=1.0))
+        rod = stage.contacts["rod"]
+        found += [
+            *body(stage.problem),
+            *pressure(rod),
+            Finding("forces out of balance", imbalance(stage.forces()), 1e-6),
+        ]
+        found.append(Finding("leaks", float(stage.fluid.leaks), 0.0))
+        lips.append(abs(float(rod.force()[1])))
+    found.append(near("force on the rod, outward again", lips[2], lips[0], 1e-4))
+    found.append(near("force on the rod, inward again", lips[3], lips[1], 1e-4))
+    return found
+
+
+def unheld(held, mu) -> list[Finding]:
+    """A block under a lid that a force presses on, and something that does not hold it."""
+    body_ = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), 0.5)
+    lid = Plane(point=(0.0, 1.0), normal_vector=(0.0, -1.0))
+    contact = Contact("lid", ("top",), lid, modulus=1.5, force_controlled=True)
+    terms = [Elasticity(RUBBER), contact] + ([FullSliding(contact, mu)] if mu else [])
+    problem = Problem(body_, PlaneStrain(), terms, supports=held)
+    problem.fields[contact.travel_name].vec[0] = 1e-3
+    advance(problem, {"lid force [N]": 0.5})
+    return [*body(problem), *pressure(contact)]
+
+
+def cases() -> list[Case]:
+    """Every case of this file."""
+    found = [Case("interference", f"{100 * x:g} %", partial(on_rod, x, 0.0)) for x in (0.02, 0.05, 0.1, 0.15, 0.3)]
+    found += [Case("interference", f"{100 * x:g} %, mu 0.3", partial(on_rod, x, 0.3)) for x in (0.02, 0.15)]
+    turns = ((0.2, 0.0), (0.2, -0.2), (0.4, -0.4), (0.4, 0.2))
+    found += [
+        Case("pressure turned round in a step", f"{a:g} to {b:g} MPa", partial(turned_round, a, b)) for a, b in turns
+    ]
+    seal = "the shipped seal turned round in a step"
+    found += [Case(seal, f"0 to {p:g} MPa and friction reversed", partial(seal_turned_round, p)) for p in (0.5, 2.0)]
+    bottom = [Support(("bottom",))]
+    found += [
+        Case(
+            "nothing holds the part",
+            "no support",
+            partial(unheld, [], 0.0),
+            "nothing holds the part along x and along y",
+        ),
+        Case(
+            "nothing holds the part",
+            "free along",
+            partial(unheld, [Support(("bottom",), x=False)], 0.3),
+            "the part along x:",
+        ),
+        Case(
+            "nothing holds the part",
+            "free across",
+            partial(unheld, [Support(("bottom",), y=False)], 0.0),
+            "the part along y:",
+        ),
+        Case("nothing holds the part", "held", partial(unheld, bottom, 0.3)),
+    ]
+    return found
