@@ -68,7 +68,7 @@ def slid(mu, force, patch=0.05) -> list[Finding]:
         found += [*body(problem), *pressure(contact), carried(contact, force)]
         depths.append(depth[0])
         if friction:
-            found.append(near("friction's heat", friction.drag(), mu * contact.profile().load.sum(), 1e-9))
+            found.append(near("friction's heat", friction.heat(1.0), mu * contact.profile().load.sum(), 1e-9))
     if friction:
         found.append(near("indentation turned round", depths[1], depths[0], 1e-3))
     else:
