@@ -24,15 +24,12 @@ class Case:
         Returns the findings; raises, or warns, where a report is due.
     reports : str
         Pattern of the documented report; without one the case has to hold.
-    fails : str
-        Why it does neither yet.
     """
 
     family: str
     label: str
     solve: Callable[[], list[Finding]]
     reports: str = ""
-    fails: str = ""
 
     def judge(self) -> tuple[str, list[Finding]]:
         """Solve the case: ``"holds"`` or ``"reports"``, and its findings; AssertionError where neither is true."""

@@ -51,9 +51,10 @@ def sheet(*, mu=0.0, law=FullSliding, forced=True, patch=0.05, bulk=1000.0, leng
     return problem, contact, friction
 
 
-def carried(contact, force=FORCE, what="force across") -> Finding:
-    """The force that the contact carries against the one that presses."""
-    return near(what, -contact.force()[1], force, 1e-6)
+def carried(contact, friction=None, force=FORCE) -> Finding:
+    """What pressure and friction carry against the force that presses."""
+    found = -contact.force()[1] - (friction.force()[1] if friction else 0.0)
+    return near("force across", found, force, 1e-6)
 
 
 def slid(mu, force, patch=0.05) -> list[Finding]:
@@ -65,7 +66,7 @@ def slid(mu, force, patch=0.05) -> list[Finding]:
     depths = []
     for sign in (1.0, -1.0) if friction else (0.0,):
         advance(problem, {SLIP: sign} if friction else {}, StepOptions(first=0.5))
-        found += [*body(problem), *pressure(contact), carried(contact, force)]
+        found += [*body(problem), *pressure(contact), carried(contact, friction, force)]
         depths.append(depth[0])
         if friction:
             found.append(near("friction's heat", friction.heat(1.0), mu * contact.profile().load.sum(), 1e-9))
@@ -87,7 +88,8 @@ def stuck_and_slid(mu, force) -> list[Finding]:
         used = np.abs(contact._sample(problem.fields[friction.tractions[0]])[:, 0])
         limit = mu * np.maximum(contact.end_pressures().mean(axis=1), 0.0)
         excess = (used - limit).max() / limit.max()
-        found += [*body(problem), *pressure(contact), carried(contact, force), Finding("over the limit", excess, 1e-6)]
+        found += [*body(problem), *pressure(contact), carried(contact, friction, force)]
+        found.append(Finding("over the limit", excess, 1e-6))
         forces.append(friction.force()[0])
     other, _, slides = sheet(mu=mu, patch=0.1)
     other.set_loads({SLIP: 0.0})
@@ -119,11 +121,11 @@ def pressed_far(mu, times) -> list[Finding]:
 
 def stiff_in_volume(ratio) -> list[Finding]:
     """The sheet with K/G, rubbed with mu = 0.3; and Lamé's ring with it, where a mesh that locks errs with K/G."""
-    problem, contact, _ = sheet(mu=0.3, bulk=1.5 * ratio)
+    problem, contact, friction = sheet(mu=0.3, bulk=1.5 * ratio)
     problem.set_loads({SLIP: 1.0})
     advance(problem, {PRESS: FORCE}, GENTLY)
     ring = Finding("error of Lamé's ring", displacement_error(ratio), 1e-3)
-    return [*body(problem), *pressure(contact), carried(contact), ring]
+    return [*body(problem), *pressure(contact), carried(contact, friction), ring]
 
 
 def meshed_with(patch) -> list[Finding]:
@@ -144,7 +146,7 @@ def in_units(length, modulus) -> list[Finding]:
     for mm, mpa in ((1.0, 1.0), (length, modulus)):
         problem, contact, friction = sheet(mu=0.5, patch=0.1, length=mm, modulus=mpa)
         advance(problem, {PRESS: FORCE * mm * mpa, SLIP: 1.0}, GENTLY)
-        found += [*body(problem), *pressure(contact), carried(contact, FORCE * mm * mpa)]
+        found += [*body(problem), *pressure(contact), carried(contact, friction, FORCE * mm * mpa)]
         depth = problem.fields[contact.travel_name].vec[0]
         seen.append((depth / mm, contact.profile().pressure.max() / mpa, friction.force()[0] / (mm * mpa)))
     for what, one, other in zip(("indentation", "peak pressure", "friction"), *seen, strict=True):
@@ -183,10 +185,8 @@ def _friction() -> list[Case]:
         Case(family, f"mu {mu:g}, F 4 N/mm", partial(slid, mu, FORCE), WRINKLES.format(f"{mu:g}")) for mu in (1.0, 1.5)
     ]
     family = "stick, slip and reversal"
-    pairs = ((0.3, FORCE), (0.7, FORCE), (1.0, 0.8), (1.5, 0.3))
+    pairs = ((0.3, FORCE), (0.7, FORCE), (1.0, 0.8), (1.5, 0.3), (1.0, 1.5))
     cases += [Case(family, f"mu {mu:g}, F {f:g} N/mm", partial(stuck_and_slid, mu, f)) for mu, f in pairs]
-    swings = "turned round, Newton's active set of stick and slip swings between three states however small the step"
-    cases.append(Case(family, "mu 1, F 1.5 N/mm", partial(stuck_and_slid, 1.0, 1.5), fails=swings))
     family = "friction at a given indentation"
     cases += [Case(family, f"mu {mu:g}", partial(indented, mu)) for mu in (0.0, 0.3, 0.5)]
     cases += [Case(family, f"mu {mu:g}", partial(indented, mu), WRINKLES.format(f"{mu:g}")) for mu in (0.7, 1.0, 1.5)]
