@@ -25,13 +25,15 @@ class Watched(Stepper):
         super().__init__(scene)
         self.found: list[Finding] = []
 
-    def _observe(self, state, index, iterations):
+    def _observe(self, state, index, iterations, sliding):
         contact = state.stage.contacts[self.scene.contacts[0].name]
+        friction = state.stage.frictions.get(contact.name)
         force = self.scene.contacts[0].force
         self.found += [*body(state.stage.problem), *pressure(contact)]
         if force is not None:
-            self.found.append(near("force across", -contact.force()[1], force, 1e-6))
-        return super()._observe(state, index, iterations)
+            across = -contact.force()[1] - (friction.force()[1] if friction else 0.0)
+            self.found.append(near("force across", across, force, 1e-6))
+        return super()._observe(state, index, iterations, sliding)
 
 
 def worn(scene: Scene):
