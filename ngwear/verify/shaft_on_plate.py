@@ -49,7 +49,7 @@ FEW, MANY = 12, 200
 def cut(scene: Scene, strokes: int, **wear: str) -> Scene:
     """The same sliding in equal strokes, each one solved."""
     (stroke,) = scene.program.cycle
-    whole = scene.program.sliding(scene.program.strokes)
+    whole = scene.program.slid(scene.program.strokes)
     program = replace(scene.program, cycle=(replace(stroke, travel=whole / strokes),), strokes=strokes)
     return replace(scene, program=program, wear=replace(scene.wear, step="each", **wear))
 
@@ -119,7 +119,7 @@ def story(scene: Scene) -> Story:
         ends = [math.asin(end[0] / radius) for zone in zones for end in (zone.start, zone.end)]
         half_angle = 0.5 * (max(ends) - min(ends))
         normal = math.sqrt((spec.force**2 + along**2) / (1 + friction**2))
-        sliding = scene.program.sliding(state.strokes) - scene.program.sliding(before)
+        sliding = scene.program.slid(state.strokes) - scene.program.slid(before)
         told.closed_form += spec.specific_wear_rate * sliding * normal / (1 - half_angle**2 / 8)
     told.depth, told.area, told.strokes = worn_depth(state.contour), state.ledger.removed, state.strokes
     told.seconds = watch.seconds
@@ -157,7 +157,7 @@ def run() -> list[Check]:
 
 def _explicit(scene: Scene, add: Callable[..., None]) -> None:
     """Below the critical distance the pressure is as smooth as the implicit one, above it is not."""
-    whole, (spec,) = scene.program.sliding(scene.program.strokes), scene.contacts
+    whole, (spec,) = scene.program.slid(scene.program.strokes), scene.contacts
     for patch in (0.1, 0.05):
         critical = critical_distance(patch, spec.specific_wear_rate, scene.material.plane_strain_modulus)
         for times, limit, bound in ((0.8, 1.05, "below"), (2.0, 1.2, "above")):
