@@ -63,6 +63,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
         phase.vector, phase.rate, phase.shares = vector, None, None
         if phase.pressure is not None:
             phase.pressure = _moved_values(before, after, phase.pressure)
+            phase.mean = _moved_values(before, after, phase.mean)
     if state.depth_error is not None:
         state.depth_error = _moved_values(before, after, state.depth_error)
     state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
@@ -72,7 +73,9 @@ def remesh(state: State, contour: Contour | None = None) -> None:
 
 def _moved_values(before: Contour, after: Contour, values: Array) -> Array:
     """Values at the points of one outline, their last axis, at those of another with almost the same shape."""
-    from scipy.spatial import cKDTree
+    from shapely import LinearRing, line_locate_point, points
 
-    _, nearest = cKDTree(before.points).query(after.points)
-    return values[..., nearest]
+    ways = np.concatenate([[0.0], np.cumsum(before.lengths)])
+    found = line_locate_point(LinearRing(before.points), points(after.points))
+    closed = np.concatenate([values, values[..., :1]], axis=-1)
+    return np.apply_along_axis(lambda row: np.interp(found, ways, row), -1, closed)

@@ -50,6 +50,7 @@ class Stage:
                 spec.surface,
                 modulus=modulus,
                 force_controlled=spec.force is not None,
+                wears=spec.wears,
                 counter=WornProfile.of(spec.surface, scene.accuracy.patch) if spec.counter_wear_rate > 0 else None,
             )
             for spec in scene.contacts

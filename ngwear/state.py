@@ -32,6 +32,8 @@ class Phase:
         Its change per cycle, on the same mesh.
     pressure : array, shape (contacts, n)
         Highest wear rate times nominal pressure of each contact at the contour points [-], of the last time.
+    mean : array, shape (contacts, n), or None
+        The same of what the last time wore over its way, and that way in ``ways`` [mm]; on this mesh.
     shares : dict of str to array, or None
         What each mesh edge has slipped over the travel [-], where friction may stick, of the last time on this mesh.
     """
@@ -39,6 +41,8 @@ class Phase:
     vector: Array
     rate: Array | None = None
     pressure: Array | None = None
+    mean: Array | None = None
+    ways: Array | None = None
     shares: dict[str, Array] | None = None
 
 

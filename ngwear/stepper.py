@@ -20,24 +20,22 @@ from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settl
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, SceneError
 from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
-from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import smoothed
 from ngwear.refinement import mounting_field, outgrown, wanted_size
 from ngwear.remesh import is_due, remesh, still_to_slide
 from ngwear.scene import Scene, Stroke
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
-from ngwear.wear.archard import at_points, critical_distance, worn_share
+from ngwear.wear.archard import critical_distance
 from ngwear.wear.control import JumpControl
 from ngwear.wear.cycles import Plan
 from ngwear.wear.strokes import Strokes
+from ngwear.wearing import Wearing, worn_edges
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
-AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
 
 
 class Stepper:
@@ -53,7 +51,6 @@ class Stepper:
     def __init__(self, scene: Scene, *, on_mount: Callable[[float], None] | None = None) -> None:
         self.scene = scene
         self.on_mount = on_mount or (lambda fraction: None)
-        self.worn_edges = tuple(e for c in scene.contacts if c.wears for e in c.edges)
         self._warn_if_unstable()
 
     def _warn_if_unstable(self) -> None:
@@ -80,7 +77,7 @@ class Stepper:
             If a surface that shall wear the part does not touch it in any stroke.
         """
         scene = self.scene
-        contour = smoothed(scene.contour, self.worn_edges, 1.3 * scene.accuracy.patch)
+        contour = smoothed(scene.contour, worn_edges(scene), 1.3 * scene.accuracy.patch)
         stage = Stage(scene, Body(contour, mounting_field(scene)))
         control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
         state = State(stage, [], control)
@@ -100,6 +97,7 @@ class Stepper:
             state.reports = []
             for i, stroke in enumerate(scene.program.cycle):
                 sliding = self._strokes(i, 0)
+                Wearing.begin(state, i, sliding)
                 iterations = self._solve_phase(state, i, stroke, sliding, far=state.ledger.remeshes == 1)
                 state.reports.append(self._observe(state, i, iterations, sliding))
             self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
@@ -215,6 +213,7 @@ class Stepper:
             saved = state.phases[i]
             state.phases[i] = replace(saved, rate=None)
             sliding, plan = self._strokes(i, state.strokes), self._plan(state.strokes, 1, state.strokes + kinds)
+            Wearing.begin(state, i, sliding)
             iterations = self._solve_phase(state, i, stroke, sliding, plan=plan)
             state.reports.insert(-1, self._observe(state, i, iterations, sliding))
             state.phases[i] = saved
@@ -251,12 +250,14 @@ class Stepper:
         begin = state.strokes
         for k, (i, repeats) in enumerate(plan):
             sliding = self._strokes(i, begin + k, repeats)
+            later = {j: self._strokes(j, begin + k + 1 + m, n - 1) for m, (j, n) in enumerate(plan[k + 1 :])}
+            wearing = Wearing.begin(state, i, sliding, later=later)
             iterations = self._solve_phase(state, i, cycle[i], sliding, plan=plan)
             if memory is not None:
                 memory.leave(state.stage.memory, i)
             seen = self._observe(state, i, iterations, sliding)
             state.strokes += repeats
-            known &= self._wear(state, i, sliding)
+            known &= wearing.take()
             state.reports.append(
                 replace(
                     seen,
@@ -308,10 +309,6 @@ class Stepper:
         vector = problem.state.vec.FV().NumPy()
         stage.begin(state.phases[index - 1].vector)
         problem.set_loads(stage.stroke_loads(stroke))
-        implicit = self.scene.wear.scheme == "implicit"
-        for spec in self.scene.contacts:
-            worn = sliding.worn_depth(spec.wear_rate)
-            stage.contacts[spec.name].compliance.Set(worn if implicit else 0.0)
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
         stage.set_shares(phase.shares)
@@ -376,65 +373,3 @@ class Stepper:
             raise ConvergenceError(
                 f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
             ) from None
-
-    def _wear(self, state: State, index: int, sliding: Strokes) -> bool:
-        """Take the stroke's worn area off the outline; return whether its error is known."""
-        stage, contour, stroke = state.stage, state.contour, self.scene.program.cycle[index]
-        state.counters = counter_wear.worn(stage, state.counters, index, sliding)
-        share = np.zeros(len(contour))
-        half = np.zeros(len(contour))
-        pressure = np.zeros((len(self.scene.contacts), len(contour)))
-        old = state.phases[index].pressure
-        if state.depth_error is None:
-            state.depth_error = np.zeros(len(contour))
-        known = old is not None
-        for spec, here, before in zip(self.scene.contacts, pressure, old if known else pressure, strict=True):
-            if not spec.wears:
-                continue
-            contact = stage.contacts[spec.name]
-            profile = contact.profile()
-            ratio = contact.at_nodes(stage.elasticity.volume_ratio())
-            load = stage.slipping(spec.name, stroke) * profile.load
-            share += worn_share(contour, profile, sliding.worn_depth(spec.wear_rate) * load / ratio)
-            here[:] = at_points(contour, profile, spec.wear_rate.highest * load / profile.weight)
-            half += 0.5 * sliding.worn_distance(spec.wear_rate) * (before - here)
-        if known:
-            width = 0.5 * (contour.lengths + np.roll(contour.lengths, 1))
-            state.ledger.area_error += float(np.abs(half) @ width)
-            state.depth_error += np.abs(half)
-            state.ledger.depth_error = float(state.depth_error.max())
-        state.phases[index].pressure = pressure
-        new = recede(contour, share, self.worn_edges)
-        state.ledger.worn += float(share.sum())
-        removed = contour.area - new.area
-        if abs(removed - share.sum()) > AREA_GATE * share.sum():
-            raise GeometryError(
-                f"the outline lost {removed:.4g} mm² where the law wears {share.sum():.4g} mm²: healing took too much"
-            )
-        state.ledger.removed += removed
-        self._follow(state, new)
-        return known
-
-    def _follow(self, state: State, worn: Contour) -> None:
-        """Let the mesh follow to a worn outline; make a new one where it cannot, unless the scene forbids it.
-
-        Raises
-        ------
-        MeshError
-            If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
-        """
-        body, why = state.stage.body, "the outline needs other points"
-        if len(worn) == len(body.contour):
-            try:
-                body.move_to(worn)
-                return
-            except MeshError as error:
-                why = str(error)
-        if self.scene.wear.remesh == "never":
-            deepest = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
-            raise MeshError(
-                f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; go on with new meshes "
-                "by wear.remesh = 'limit' or 'due', or begin with larger elements (accuracy.patch)"
-            )
-        log.info("%s: a new mesh is needed", why)
-        remesh(state, worn)

@@ -25,6 +25,8 @@ class Contact(UnilateralContact):
     A surface that slides (``slides=True``) also moves across its approach, turned by +90 degrees, by the load
     ``"NAME slide [mm]"``; all else as in ``UnilateralContact``.
 
+    With ``wears`` a depth ``worn`` may be set that is lost in the same step whatever the pressure.
+
     A surface that is worn itself (``counter``, also an attribute that may be replaced between solves) stands back by
     the depth of its profile, which has moved along the surface's tangent by ``turned`` [mm]. Each solve takes that
     depth where the state that it starts from touches, and the normal of the unworn surface: the profile must be shallow
@@ -40,10 +42,11 @@ class Contact(UnilateralContact):
         force_controlled: bool = False,
         slides: bool = False,
         counter: WornProfile | None = None,
+        wears: bool = False,
         modulus: float,
     ) -> None:
         super().__init__(name, edges, surface, force_controlled=force_controlled, modulus=modulus)
-        self.counter, self.turned = counter, 0.0
+        self.counter, self.turned, self.wears = counter, 0.0, wears
         self.slid: ng.Parameter | None = None
         if slides:
             self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
@@ -65,6 +68,8 @@ class Contact(UnilateralContact):
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         if self.counter is not None:
             self._stands_back = ng.GridFunction(unknowns.state[self.pressure_name].space)
+        if self.wears:
+            self.worn = ng.GridFunction(unknowns.state[self.pressure_name].space)
         super().add_to(form, unknowns)
         self._lay_samples(unknowns.body, self._region)
 
@@ -164,6 +169,18 @@ class Contact(UnilateralContact):
             vector[dofs[:, k]] = 1.0
             shapes.append(self._sample(field))
         return dofs, np.stack(shapes, axis=-1)
+
+    def set_worn(self, depth: Array) -> None:
+        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P."""
+        self._interpolate(self.worn, self._along_outline(depth))
+
+    def from_points(self, values: Array) -> Array:
+        """Values at the outline's points, linear between them, at the nodes of ``profile``."""
+        return ContactProfile.average(self._body, self.positions, self._along_outline(values))
+
+    def _along_outline(self, values: Array) -> Array:
+        ends = self._body.outline.t[self.positions]
+        return np.interp(ends, np.arange(len(values) + 1), np.append(values, values[0]))
 
     def sample_middles(self, field: ng.CoefficientFunction) -> Array:
         """Mean at both ends of each mesh edge, in the order of the outline; shape (m,)."""

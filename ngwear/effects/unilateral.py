@@ -53,6 +53,8 @@ class UnilateralContact(Term):
     slips_in_part : bool
         Set by a friction that sticks: kappa is then times ``share``, constant on each surface element and 1 at first,
         what slips there over the way that the surface slides.
+    worn : ng.GridFunction or None
+        Depth that is worn in the same step whatever P [mm per reference area], of a contact that keeps one.
     softness : ng.Parameter
         Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
         it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
@@ -75,6 +77,7 @@ class UnilateralContact(Term):
         self.compliance = ng.Parameter(0.0)
         self.slips_in_part = False
         self.share: ng.GridFunction | None = None
+        self.worn: ng.GridFunction | None = None
         self.load = ng.Parameter(0.0)
         self._extent = ng.Parameter(1.0)  # of the whole surface as it is meshed and worn [mm, or mm²]
         kind = "force [N]" if force_controlled else "approach [mm]"
@@ -153,7 +156,8 @@ class UnilateralContact(Term):
             kappa = kappa * self.share
         self._augmentation = c = 1 / (0.5 * self.softness * give + kappa)
         p = unknowns.trial[self.pressure_name]
-        pushed = p - c * self.gap(unknowns.trial)
+        gap = self.gap(unknowns.trial)
+        pushed = p - c * (gap if self.worn is None else gap + self.worn / stretch)
         closure = 1 + c * (1e-6 * give + kappa / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight

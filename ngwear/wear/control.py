@@ -16,13 +16,13 @@ SAFETY = 0.9
 
 @dataclass
 class JumpControl:
-    """Choose the jump from the embedded pair of backward Euler and the trapezoidal rule.
+    """Choose the jump from the embedded pair of backward differences (``wear.backward``) and the trapezoidal rule.
 
-    Their difference over a step, ``e = k ds (P_old - P_new) / 2``, is measured as an area (L1 norm over the
-    outline: in the maximum norm a point that has just come into contact would keep the step small for
-    ever), relative to the area that the step removes. That ratio is of first order in the jump, so
+    Their difference over a step is measured as an area (L1 norm over the outline: in the maximum norm a point that has
+    just come into contact would keep the step small for ever), relative to the area that the step removes. That ratio
+    is of second order in the jump, so
 
-        n_new = 0.9 n tolerance / ratio,   growth at most 3.
+        n_new = 0.9 n sqrt(tolerance / ratio),   growth at most 3.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class JumpControl:
         elif ratio == 0:
             factor = GROWTH
         else:
-            factor = min(GROWTH, max(0.3, SAFETY * self.tolerance / ratio))
+            factor = min(GROWTH, max(0.3, SAFETY * math.sqrt(self.tolerance / ratio)))
         self.cycles = int(min(self.longest, max(1, math.floor(factor * cycles + 1e-9))))
 
     def cut(self, cycles: int) -> None:

@@ -19,6 +19,7 @@ from ngwear.scene import SupportSpec
 from ngwear.scenefile import read_scene
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Plane
+from ngwear.wearing import Wearing
 
 SHIFT = 'shift = { law = "wlf", c1 = 17.44, c2 = 51.6, reference = 296.15 }'
 WARMER = "temperature = 303.15\n"
@@ -252,7 +253,7 @@ def test_rejected_step_leaves_the_memory_alone(remembering, monkeypatch):
     def fail(*_, **__):
         raise ConvergenceError("for the test")
 
-    monkeypatch.setattr(stepper, "_wear", fail)
+    monkeypatch.setattr(Wearing, "take", fail)
     with pytest.raises(ConvergenceError):
         stepper.advance(state)
     assert (state.memory.relaxed == relaxed).all()

@@ -23,6 +23,7 @@ from ngwear.run import COMPLETED, GAVE_UP, run
 from ngwear.scene import Save
 from ngwear.scenefile import read_scene
 from ngwear.stepper import Stepper
+from ngwear.wearing import Wearing
 
 FILES = {SERIES, FIELDS, SUMMARY, CHECKPOINT}
 CONTRACT = {
@@ -456,16 +457,16 @@ def test_giving_up_raises_if_asked_to_and_saves_before(tmp_path, sheet, monkeypa
 def test_failed_jump_is_taken_back_and_halved(tmp_path, write_sheet, monkeypatch, caplog):
     """A step that fails once leaves no trace but a retry."""
     scene = read_scene(jumping(tmp_path, write_sheet))
-    real, failed = Stepper._wear, []
+    real, failed = Wearing.take, []
 
-    def wear(self, state, index, sliding):
-        if sliding.distance > 10 and not failed:
-            failed.append(state.strokes)
-            real(self, state, index, sliding)
+    def take(self):
+        if self.sliding.distance > 10 and not failed:
+            failed.append(self.state.strokes)
+            real(self)
             raise GeometryError("made to fail")
-        return real(self, state, index, sliding)
+        return real(self)
 
-    monkeypatch.setattr(Stepper, "_wear", wear)
+    monkeypatch.setattr(Wearing, "take", take)
     with caplog.at_level(logging.INFO):
         result = run(scene, figures=False)
     assert failed

@@ -1,0 +1,185 @@
+"""The wear of one solve: an outline foreseen, a depth worn within the solve, and the outline after it."""
+
+from __future__ import annotations
+
+import logging
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear import counter_wear
+from ngwear.errors import GeometryError, MeshError
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.recession import recede
+from ngwear.remesh import remesh
+from ngwear.scene import Scene
+from ngwear.state import State
+from ngwear.wear.archard import at_points, worn_share
+from ngwear.wear.backward import share_of_last
+from ngwear.wear.strokes import Strokes
+
+Array = NDArray[np.float64]
+log = logging.getLogger(__name__)
+
+AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
+
+
+@dataclass
+class Wearing:
+    """The wear of strokes that one solve stands for: ``begin``, solve, ``take``.
+
+    Implicit wear of second order in the step. The outline is foreseen: it moves to where the mean pressure of the last
+    step would take it, so that the rubber is as thin, and lies where, it will at the end of the step's last stroke; the
+    depth of the solve is counted from there. Then ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in ``wear.backward``.
+    Without a last step on record it is backward Euler on the outline as it was: of first order.
+
+    Attributes
+    ----------
+    outline : Contour
+        Before the wear.
+    own : array, shape (contacts,)
+        Weight of the pressure at the step's end, 1 - a [-].
+    last, ahead : array, shape (contacts, n)
+        Depth worn by the last step's mean pressure, ``kappa a q_0``, and depth taken off in the foreseen outline [mm].
+    """
+
+    state: State
+    index: int
+    sliding: Strokes
+    outline: Contour
+    own: Array
+    last: Array
+    ahead: Array
+
+    @classmethod
+    def begin(cls, state: State, index: int, sliding: Strokes, *, later: dict[int, Strokes] | None = None) -> Wearing:
+        """Foresee the outline of a stroke of the cycle and let its contacts wear in the next solve.
+
+        ``later`` are the strokes of other kinds that are to come in this step and lie before the last one of this kind.
+        """
+        scene, phase, outline = state.stage.scene, state.phases[index], state.contour
+        n, count = len(outline), len(scene.contacts)
+        wearing = cls(state, index, sliding, outline, np.ones(count), np.zeros((count, n)), np.zeros((count, n)))
+        ways = wearing.ways
+        if scene.wear.scheme == "implicit" and phase.mean is not None:
+            share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
+            wearing.own, wearing.last = 1.0 - share, (share * ways)[:, None] * phase.mean
+            wearing._foresee(ways[:, None] * phase.mean, later or {})
+            wearing.last *= wearing.shrunk
+        implicit = scene.wear.scheme == "implicit"
+        for spec, own, known in zip(scene.contacts, wearing.own, wearing.last - wearing.ahead, strict=True):
+            contact = state.stage.contacts[spec.name]
+            contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
+            if spec.wears:
+                contact.set_worn(known)
+        return wearing
+
+    @property
+    def shrunk(self) -> Array:
+        """Lengths of the outline at its points over those of the foreseen one: loads stay, so pressures grow by it."""
+        return _widths(self.outline) / _widths(self.state.contour)
+
+    @property
+    def ways(self) -> Array:
+        """``int k ds`` over the highest k of each contact [mm]."""
+        return self._ways(self.sliding)
+
+    def _ways(self, sliding: Strokes) -> Array:
+        return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
+
+    def _foresee(self, depth: Array, later: dict[int, Strokes]) -> None:
+        edges, whole = worn_edges(self.state.stage.scene), depth.sum(axis=0)
+        for kind, sliding in later.items():
+            if self.state.phases[kind].mean is not None:
+                whole = whole + (self._ways(sliding)[:, None] * self.state.phases[kind].mean).sum(axis=0)
+        half = 0.5 * self.outline.lengths * self.outline.on(edges)
+        try:
+            foreseen = recede(self.outline, whole * (half + np.roll(half, 1)), edges)
+            if len(foreseen) != len(self.outline):
+                return
+            self.state.stage.body.move_to(foreseen)
+        except (GeometryError, MeshError) as error:
+            log.info("%s: the outline is not foreseen", error)
+            return
+        self.ahead = depth
+
+    def take(self) -> bool:
+        """Take the worn area off the outline; return whether its error is known.
+
+        The error is the difference from the trapezoidal rule, in the depth of each point of the outline.
+
+        Raises
+        ------
+        GeometryError
+            If the outline had to be healed and missed the worn area by it.
+        MeshError
+            If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
+        """
+        state, outline, phase = self.state, self.outline, self.state.phases[self.index]
+        stage, scene = state.stage, state.stage.scene
+        stroke = scene.program.cycle[self.index]
+        state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding)
+        share, off = np.zeros(len(outline)), np.zeros(len(outline))
+        pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
+        for k, spec in enumerate(scene.contacts):
+            if not spec.wears or ways[k] == 0:
+                continue
+            contact = stage.contacts[spec.name]
+            profile = contact.profile()
+            rate = spec.wear_rate.highest * stage.slipping(spec.name, stroke) * profile.load / profile.weight
+            depth = self.own[k] * ways[k] * rate + contact.from_points(self.last[k])
+            ratio = contact.at_nodes(stage.elasticity.volume_ratio())
+            share += worn_share(outline, profile, depth * profile.weight / ratio)
+            pressure[k], mean[k] = at_points(outline, profile, rate), at_points(outline, profile, depth / ways[k])
+            if phase.pressure is not None:
+                off += ways[k] * (mean[k] - 0.5 * (self.shrunk * phase.pressure[k] + pressure[k]))
+        known = phase.pressure is not None
+        if known:
+            state.ledger.area_error += float(np.abs(off) @ _widths(state.contour))
+            before = np.zeros(len(outline)) if state.depth_error is None else state.depth_error
+            state.depth_error = before + np.abs(off)
+            state.ledger.depth_error = float(state.depth_error.max())
+        new = recede(outline, share, worn_edges(scene))
+        if len(new) == len(outline):
+            shrinks = _widths(state.contour) / _widths(new)
+            pressure, mean = shrinks * pressure, shrinks * mean
+        phase.pressure, phase.mean, phase.ways = pressure, mean, ways
+        removed, worn = outline.area - new.area, float(share.sum())
+        state.ledger.worn += worn
+        if abs(removed - worn) > AREA_GATE * worn:
+            raise GeometryError(
+                f"the outline lost {removed:.4g} mm² where the law wears {worn:.4g} mm²: healing took too much"
+            )
+        state.ledger.removed += removed
+        _follow(state, outline, new)
+        return known
+
+
+def worn_edges(scene: Scene) -> tuple[str, ...]:
+    """Names of the edges that wear."""
+    return tuple(e for c in scene.contacts if c.wears for e in c.edges)
+
+
+def _widths(contour: Contour) -> Array:
+    """Length of the outline that belongs to each point [mm]."""
+    return 0.5 * (contour.lengths + np.roll(contour.lengths, 1))
+
+
+def _follow(state: State, outline: Contour, worn: Contour) -> None:
+    """Let the mesh follow to a worn outline; make a new mesh where it cannot, unless the scene forbids it."""
+    body, why = state.stage.body, "the outline needs other points"
+    if len(worn) == len(outline):
+        try:
+            body.move_to(worn)
+            return
+        except MeshError as error:
+            why = str(error)
+    if state.stage.scene.wear.remesh == "never":
+        deepest = np.linalg.norm(outline.points - body.base.points, axis=1).max()
+        raise MeshError(
+            f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; go on with new meshes "
+            "by wear.remesh = 'limit' or 'due', or begin with larger elements (accuracy.patch)"
+        )
+    log.info("%s: a new mesh is needed", why)
+    remesh(state, worn)
