@@ -86,6 +86,8 @@ def _run(options: argparse.Namespace) -> int:
         print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
         print(f"ngwear: what was computed until then is in {options.out}", file=sys.stderr)
         return GAVE_UP
+    for warning in summary.get("warnings", []):
+        print(f"ngwear: warning: {warning}", file=sys.stderr)
     if not options.quiet:
         _print_table(summary)
         print(f"results and figures: {options.out}")

@@ -100,6 +100,7 @@ class Recorder:
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
         for name, heat in report.heats.items():
             row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
+        row |= {f"{name} margin of steady sliding [-]": margin for name, margin in report.margins.items()}
         row |= {f"{name} friction coefficient [-]": mu for name, mu in report.coefficients.items()}
         row |= {f"{name} specific wear rate [mm^2/N]": rate for name, rate in report.wear_rates.items()}
         row |= {
@@ -159,6 +160,7 @@ class Recorder:
         if peaks:
             out["peak pressure [MPa]"] = max(r[c] for r in self.rows[-len(cycle) :] for c in peaks)
         worst = max(ledger.worn, 1e-300)
+        out["warnings"] = self._warnings()
         out |= {
             "solves": state.work.solves,
             "Newton iterations": state.work.iterations,
@@ -179,6 +181,19 @@ class Recorder:
             "ngwear": __version__,
         }
         return out
+
+    def _warnings(self) -> list[str]:
+        """What a reader of the results should know of them."""
+        found = []
+        for spec in self.scene.contacts:
+            column = f"{spec.name} margin of steady sliding [-]"
+            least = min((row[column] for row in self.rows if row.get(column, 0.0) < 0.0), default=0.0)
+            if least < 0.0:
+                found.append(
+                    f"contact '{spec.name}': friction and pressure are so high that steady sliding is unstable "
+                    f"({column} {least:.2g}): waves would run along the surface; what is given is the steady state"
+                )
+        return found
 
 
 def _mean_radius(before: Contour, after: Contour) -> float:

@@ -213,9 +213,6 @@ class Accuracy:
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side.
     folding_error : float
         Largest relative error of stress that arms of the memory may cause by being folded away [-].
-    pointwise : float
-        Volumetric stiffness kept at each point over the shear modulus [-], >= 0; the energy is the same for all.
-        Pressures of several G ask for about 10, friction of about G for 0 (``effects.elasticity``).
     """
 
     patch: float = 0.01
@@ -226,7 +223,6 @@ class Accuracy:
     stress_error: float = 0.05
     wear_error: float = 0.08
     folding_error: float = 1e-3
-    pointwise: float = 10.0
 
     def __post_init__(self) -> None:
         _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
@@ -238,9 +234,6 @@ class Accuracy:
         _require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
         _require(
             0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
-        )
-        _require(
-            0 <= self.pointwise < math.inf, "accuracy.pointwise", self.pointwise, "must be at least 0 and not infinite"
         )
 
 

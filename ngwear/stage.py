@@ -42,7 +42,7 @@ class Stage:
         self.scene, self.body = scene, body
         rubber = scene.rubber
         modulus = rubber.shear_modulus
-        self.elasticity = Elasticity(rubber, order=scene.accuracy.order, pointwise=scene.accuracy.pointwise)
+        self.elasticity = Elasticity(rubber, order=scene.accuracy.order)
         self.contacts = {
             spec.name: Contact(
                 spec.name,
@@ -222,6 +222,10 @@ class Stage:
             middle = 0.5 * (low + high)
             low, high = (low, middle) if smallest(middle) >= 0 else (middle, high)
         return high
+
+    def margins(self) -> dict[str, float]:
+        """How far each contact that slides in full is from waves that grow along it [-], see ``Ripples.margin``."""
+        return {name: f.margin() for name, f in self.frictions.items() if isinstance(f, FullSliding)}
 
     def forces(self) -> dict[str, Array]:
         """Resultants on the part in the present state, (x, y) [N, or N/mm in plane strain].

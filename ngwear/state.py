@@ -121,6 +121,8 @@ class StrokeReport:
         Resultants on the part [N, or N/mm].
     heats : dict of str to float
         Heat of the friction in one stroke, of each contact that has friction [mJ, or mJ/mm].
+    margins : dict of str to float
+        How far each contact that slides in full is from waves that grow along it [-]: below 0 they do.
     coefficients, wear_rates : dict of str to float
         Mean friction coefficient under the pressure [-] and mean k of the strokes [mm²/N], of the contacts whose law is
         no constant.
@@ -141,6 +143,7 @@ class StrokeReport:
     contacts: dict[str, ContactProfile]
     forces: dict[str, Array]
     heats: dict[str, float]
+    margins: dict[str, float]
     coefficients: dict[str, float]
     wear_rates: dict[str, float]
     counters: dict[str, WornProfile]

@@ -346,6 +346,7 @@ class Stepper:
             contacts={spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed},
             forces=stage.forces(),
             heats={name: friction.heat(sliding.travel) for name, friction in stage.frictions.items()},
+            margins=stage.margins(),
             coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
             wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
             counters=state.counters,

@@ -73,6 +73,9 @@ class Term(abc.ABC):
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         """Add energies (``Variation``) or forms on the outline to the equilibrium."""
 
+    def gather(self) -> None:  # noqa: B027 - most terms need but what is near
+        """Before each residual, take from the present state what the form, which sees one element, cannot."""
+
     def prepare(self) -> None:  # noqa: B027 - most terms have nothing to freeze
         """Freeze, from the state that a solve starts from, what stays fixed in that solve."""
 

@@ -10,13 +10,13 @@ from ngwear.effects.isochoric import isochoric_energy, respond
 from ngwear.geometry.meshed import Meshed
 from ngwear.materials import Hyperelastic
 
-POINTWISE = 10.0  # Ks / G
+POINTWISE = 3.0  # Ks / G
 
 
 class Elasticity(VolumeTerm):
-    """Energy ``psi_iso + Ks/2 (J - 1)^2 + p (J - 1) - p^2 / (2 (K - Ks))`` over the section.
+    """Energy ``psi_iso + Ks/2 (J - 1)^2 + p (J - 1) - p^2 / (2 (K - Ks))`` over the section, Ks = 3 G.
 
-    The unknown p [MPa] carries all but a small part Ks of the volumetric stiffness, ``pointwise`` times G. With
+    The unknown p [MPa] carries all but a small part Ks of the volumetric stiffness. With
     displacements of order 2 and p of order 1 (Taylor-Hood) no locking appears for any K/G (perturbed Lagrangian of
     Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51 (1985) 177).
 
@@ -25,27 +25,25 @@ class Elasticity(VolumeTerm):
     Appl. Mech. Eng. 194 (2005) 1075): under a lip at p = 3.5 G one load had several discrete solutions, which
     differed by 3 µm and 15 % of the peak pressure. The sum of both parts is the exact energy K/2 (J - 1)^2.
 
-    Under tractions along the surface of about G the same Ks harms: wrinkles of the mesh's wavelength again, the more
-    the finer the mesh (roller under 4 N/mm on a sheet, elements of 0.05 mm: from mu = 0.75 on with 10 G, 0.9 with 0).
+    Under tractions along the surface of about G a large Ks harms: at 10 G the pressure of ``verify sliding_roller`` has
+    wrinkles of the mesh's wavelength from mu = 0.9 on, on elements of 0.025 mm, and none at 3 G.
 
     Parameters
     ----------
     material : Hyperelastic
     order : int
         Polynomial order of the displacement.
-    pointwise : float
-        Ks / G [-], >= 0.
     """
 
-    def __init__(self, material: Hyperelastic, *, order: int = 2, pointwise: float = POINTWISE) -> None:
+    def __init__(self, material: Hyperelastic, *, order: int = 2) -> None:
         super().__init__()
-        self.material, self.order, self.pointwise = material, order, pointwise
+        self.material, self.order = material, order
 
     @property
     def split(self) -> tuple[float, float]:
         """The bulk modulus in two [MPa]: the part taken pointwise, and the part carried by the unknown."""
         bulk = self.material.bulk_modulus
-        pointwise = min(self.pointwise * self.material.shear_modulus, bulk / 2)
+        pointwise = min(POINTWISE * self.material.shear_modulus, bulk / 2)
         return pointwise, bulk - pointwise
 
     def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:

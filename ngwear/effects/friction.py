@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+import math
 from typing import Any
 
 import ngsolve as ng
@@ -10,6 +11,8 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
 from ngwear.effects.coefficient import Coefficient
+from ngwear.effects.contact import Contact
+from ngwear.effects.ripples import Ripples
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.laws import Constant, FrictionLaw
 
@@ -81,7 +84,8 @@ class FullSliding(Friction):
 
     The load ``"NAME slip"`` in [-1, 1] is the direction in which the surface moves along its tangent (the
     surface's normal turned clockwise); values between ramp a reversal. Neglects the stick phase after a
-    reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric.
+    reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric. On an outline, what
+    ripples of the pressure rub acts a little downstream (see ``Ripples``).
     Parameters and errors as of ``Friction``.
     """
 
@@ -89,6 +93,7 @@ class FullSliding(Friction):
         super().__init__(contact, law, speed=speed)
         self.slip = ng.Parameter(1.0)
         self.loads = {f"{contact.name} slip": self.slip}
+        self._ripples: Ripples | None = None
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         contact = self.contact
@@ -96,11 +101,18 @@ class FullSliding(Friction):
         u = unknowns.u
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
         stretch = unknowns.kinematics.area_stretch(u, ng.Grad(u).Trace())
-        traction = self.coefficient(p / stretch) * self.slip * p * unknowns.kinematics.weight
-        work = -traction * sum(t * v for t, v in zip(tangent, contact.virtual(unknowns), strict=True))
+        mu = self.coefficient(p / stretch) * unknowns.kinematics.weight
+        work = -mu * self.slip * p * sum(t * v for t, v in zip(tangent, contact.virtual(unknowns), strict=True))
+        if isinstance(contact, Contact):
+            self._ripples = Ripples(contact, unknowns)
+            work += mu * ng.IfPos(self.slip, self.slip, -self.slip) * self._ripples.moved
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
+
+    def gather(self) -> None:
+        if self._ripples is not None:
+            self._ripples.gather()
 
     def force(self) -> Array:
         tangent = self.contact.surface.tangent(*self.contact.place(self._unknowns.state))
@@ -109,6 +121,10 @@ class FullSliding(Friction):
     def heat(self, way: float) -> float:
         """``way int mu P dA``."""
         return way * self._integral(self._limit())
+
+    def margin(self) -> float:
+        """Least Re f over the contact (see ``Ripples``) [-]: below 0 steady sliding is unstable; nan out of contact."""
+        return math.nan if self._ripples is None else self._ripples.margin(self.slip.Get() * self.mu())
 
     def _limit(self) -> Any:
         """Nominal traction mu P of the present state [MPa]."""

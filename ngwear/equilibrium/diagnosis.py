@@ -6,7 +6,7 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array
-from ngwear.effects.friction import Friction
+from ngwear.effects.friction import Friction, FullSliding
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
 
@@ -19,7 +19,7 @@ NEAR = 1.03  # times the first: how far from it the last equilibrium before a fa
 
 def diagnosis(problem: Problem) -> str:
     """Sentences for the message of a walk that gave up; empty if nothing stands out."""
-    found = [_unheld(problem), _unstable_surface(problem)]
+    found = [_unheld(problem), _unstable_surface(problem), _unsteady_sliding(problem)]
     return "".join(f"\n{sentence}" for sentence in found if sentence)
 
 
@@ -100,4 +100,13 @@ def _unstable_surface(problem: Problem) -> str:
         f"compresses the rubber at ({place}) to {least[worst]:.2g} of its length; a surface creases from {CREASING} "
         f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: control the force instead of the "
         "place and load it in smaller steps, lower the friction, or take a stiffer rubber"
+    )
+
+
+def _unsteady_sliding(problem: Problem) -> str:
+    """Contacts on which waves would grow as they run."""
+    sliding = [t for t in problem.terms if isinstance(t, FullSliding) and t.margin() < 0]
+    return "; ".join(
+        f"sliding at contact '{t.contact.name}' would not stay steady: waves grow along it (margin {t.margin():.2g})"
+        for t in sliding
     )

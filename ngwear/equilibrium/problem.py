@@ -163,6 +163,8 @@ class Problem:
 
     def residual(self, out: ng.BaseVector) -> None:
         """Write the residual at the present state, zero on prescribed unknowns."""
+        for term in self.terms:
+            term.gather()
         self.form.Apply(self.state.vec, out)
         values = out.FV().NumPy()
         if self.points is not None:

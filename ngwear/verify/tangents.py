@@ -16,7 +16,7 @@ from collections.abc import Iterator
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term
 from ngwear.effects.contact import Contact
 from ngwear.effects.contact_patch import PatchContact
 from ngwear.effects.elasticity import Elasticity
@@ -28,7 +28,6 @@ from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Solid
 from ngwear.geometry.contour import Contour
-from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.sheet import Sheet
 from ngwear.laws import ByPressure
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
@@ -55,18 +54,11 @@ SURFACES = {
 BALLS = {"ball": Sphere(centre=(-1.5, 0.0, TOP + 2.5), radius=3.0, track_radius=8.0)}
 
 
-class _UnknownsOf(Term):
-    """A contact's unknowns without its energy: a term that is built on them is seen alone."""
+class _FullSliding(FullSliding):
+    """With the smooth pressure of its ripples held, as the tangent has it."""
 
-    def __init__(self, contact: UnilateralContact) -> None:
-        super().__init__()
-        self.contact = contact
-
-    def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
-        return self.contact.spaces(body)
-
-    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
-        """Add nothing."""
+    def gather(self) -> None:
+        """Keep it."""
 
 
 def _set_state(problem: Problem, rng: np.random.Generator) -> None:
@@ -129,7 +121,7 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
             how = "force" if forced else "displacement"
             for by, law in FRICTION.items():
                 contact = _contact(surface, forced, 0.0)
-                terms = [_UnknownsOf(contact), FullSliding(contact, law)]
+                terms = [contact, _FullSliding(contact, law)]
                 yield f"full sliding{by}, {name}, {how}, {kin}", kinematics, terms
                 contact = _contact(surface, forced, 0.0)
                 sticks = StickSlip(contact, law)

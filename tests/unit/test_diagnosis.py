@@ -73,8 +73,8 @@ def test_a_part_that_is_held_and_touched_gets_no_advice(rectangle):
 
 def test_friction_that_wrinkles_the_surface_is_said_with_its_numbers(rectangle):
     roller = Cylinder(centre=(1.0, 3.0), radius=2.0)
-    problem = pressed(rectangle, [Support(("bottom",))], surface=roller, friction=1.2)
-    with pytest.raises(ConvergenceError, match=r"friction of 1\.2 under p/G = [\d.]+ at contact 'lid'") as found:
+    problem = pressed(rectangle, [Support(("bottom",))], surface=roller, friction=0.8)
+    with pytest.raises(ConvergenceError, match=r"friction of 0\.8 under p/G = [\d.]+ at contact 'lid'") as found:
         advance(problem, {"lid force [N]": 4.0}, StepOptions(first=0.05))
     assert "control the force" in str(found.value)
     strain = problem.points.strain(problem.state.vec.FV().NumPy())[..., :4].reshape(-1, 2, 2)
