@@ -160,7 +160,7 @@ class Stepper:
             return advance(problem, loads, options, on_step=report)
         except ConvergenceError as error:
             found = str(error).removesuffix(f"\n{error.report}")
-            advice = "" if "\n" in found else "; lower force, interference or friction"  # a cause found says more
+            advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds
             raise ConvergenceError(
                 f"no equilibrium found that carries the load{advice}: {found}", error.report
             ) from None
