@@ -157,10 +157,10 @@ class Stepper:
         try:
             return advance(problem, loads, options, on_step=report)
         except ConvergenceError as error:
-            found = str(error).splitlines()[0]
+            found = str(error).removesuffix(f"\n{error.report}")
+            advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds
             raise ConvergenceError(
-                f"no equilibrium found that carries the load; lower force, interference or friction: {found}",
-                error.report,
+                f"no equilibrium found that carries the load{advice}: {found}", error.report
             ) from None
 
     def finished(self, state: State) -> bool:

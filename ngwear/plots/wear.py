@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
+from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.laws import has_laws, law_figure
 from ngwear.plots.style import COLOURS, new_figure
 from ngwear.result_file import ResultFile, Snapshot, read_result
@@ -36,6 +37,8 @@ def plot(folder: Path | str) -> list[Path]:
     figures = {"mesh": mesh_figure, "profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
     if has_laws(result):
         figures["laws"] = law_figure
+    if worn_counters(result):
+        figures["counter_surface"] = counter_figure
     if is_mirrored(result.outline):
         figures["asymmetry"] = asymmetry_figure
     written = []

@@ -9,6 +9,8 @@ import pytest
 from ngwear.counter_wear import ways
 from ngwear.errors import SceneError
 from ngwear.explain import explain
+from ngwear.plots.counter import counter_figure, worn_counters
+from ngwear.plots.wear import plot
 from ngwear.result_file import read_result
 from ngwear.run import run
 from ngwear.scene import Program, Stroke
@@ -120,3 +122,22 @@ def test_a_surface_that_wears_alone_is_refused_and_explained_otherwise(tmp_path,
         read_scene(write_sheet(tmp_path, WEARS, ("5.0e-4", "-1.0")))
     told = explain(read_scene(write_sheet(tmp_path, WEARS)))
     assert "0.0005 mm²/N" in told["effects"]["wear of the surface of 'roller'"]
+
+
+def test_a_worn_surface_is_drawn_and_only_then(tmp_path, write_sheet):
+    for name, more in NEITHER_AND_BOTH:
+        scene = read_scene(write_sheet(tmp_path / name, *PLATE, *TO_AND_FRO, *more))
+        whole = run(scene, out=tmp_path / name / "out", figures=False)
+        drawn = [path.name for path in plot(tmp_path / name / "out")]
+        assert ("counter_surface.png" in drawn) is (name == "both")
+    result, counter = read_result(tmp_path / "both" / "out"), whole.state.counters["roller"]
+    assert worn_counters(result) == ["roller"]
+    (panel,) = counter_figure(result).axes
+    depths = [line.get_ydata().max() for line in panel.lines]
+    assert depths == sorted(depths)
+    assert [line.get_label() for line in panel.lines] == [f"after {n} strokes" for n in (3, 6, 12)]
+    assert panel.lines[-1].get_xdata() == pytest.approx(counter.along)
+    assert panel.lines[-1].get_ydata() == pytest.approx(1e3 * counter.depth)
+    left, right = panel.get_xlim()
+    assert left < counter.along[counter.depth > 0].min() < counter.along[counter.depth > 0].max() < right
+    assert panel.yaxis_inverted()

@@ -84,6 +84,7 @@ def test_a_uniformly_worn_surface_only_comes_nearer():
 def test_both_bodies_lose_what_the_law_wears_and_a_refused_jump_leaves_no_trace():
     motion = Motion(amplitude=0.05, wear_rate=1e-3, counter_wear_rate=5e-4, places=2)
     fretting = Fretting(*block_under_cylinder(WornProfile(0.04)), motion, JumpControl(0.01, cycles=64))
+    unworn = fretting.scar()
     fretting.advance(100)
     assert fretting.work.retries > 0
     fretting.advance(fretting.cycles + 4)
@@ -93,6 +94,7 @@ def test_both_bodies_lose_what_the_law_wears_and_a_refused_jump_leaves_no_trace(
     assert scar.area == pytest.approx(motion.wear_rate * path * 0.05, rel=0.02)
     assert scar.counter.area == pytest.approx(fretting.counter_worn, rel=1e-12)
     assert scar.counter.area == pytest.approx(0.5 * scar.area, rel=2e-2)
-    part, counter, _ = draw_scars([scar]).axes
+    part, counter, _ = draw_scars([unworn, scar]).axes
+    assert len(part.lines) == len(counter.lines) == 1
     assert part.lines[0].get_ydata().max() == pytest.approx(1e3 * scar.depth.max())
     assert counter.lines[0].get_ydata().max() == pytest.approx(1e3 * scar.counter.depth.max())

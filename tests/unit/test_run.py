@@ -408,6 +408,14 @@ def test_force_far_too_high_gives_up_while_mounting_and_says_so(tmp_path, write_
     assert {"wall time [s]", "CPU time [s]"} <= set(summary), "what it cost is known"
 
 
+def test_a_part_that_nothing_holds_is_told_so_and_not_to_lower_its_force(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, ('[[support]]\nedges = ["bottom"]', "")))
+    message = run(scene, throw=False).message
+    assert "nothing holds the part along y: add a support" in message
+    assert "lower force" not in message
+    assert message.count("last displacement corrections") == 1
+
+
 @pytest.fixture
 def through(tmp_path, write_sheet):
     """A sheet of 0.3 mm that the roller wears through after some strokes."""
