@@ -23,6 +23,7 @@ from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import smoothed
+from ngwear.lasting_slip import lasting
 from ngwear.refinement import mounting_field, outgrown, wanted_size
 from ngwear.remesh import is_due, remesh, still_to_slide
 from ngwear.scene import Scene, Stroke
@@ -314,7 +315,7 @@ class Stepper:
             stage.contacts[spec.name].compliance.Set(worn if implicit else 0.0)
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
-        stage.set_shares(phase.shares)
+        stage.set_shares(lasting(self.scene.program.cycle, state.phases, index, sliding.repeats))
         counter_wear.place(stage, state.counters, index, sliding)
         if state.memory is not None:
             state.memory.enter(stage.memory, plan, index)
@@ -378,8 +379,9 @@ class Stepper:
 
     def _wear(self, state: State, index: int, sliding: Strokes) -> bool:
         """Take the stroke's worn area off the outline; return whether its error is known."""
-        stage, contour, stroke = state.stage, state.contour, self.scene.program.cycle[index]
-        state.counters = counter_wear.worn(stage, state.counters, index, sliding)
+        stage, contour = state.stage, state.contour
+        shares = lasting(self.scene.program.cycle, state.phases, index, sliding.repeats) or {}
+        state.counters = counter_wear.worn(stage, state.counters, index, sliding, shares)
         share = np.zeros(len(contour))
         half = np.zeros(len(contour))
         pressure = np.zeros((len(self.scene.contacts), len(contour)))
@@ -393,7 +395,7 @@ class Stepper:
             contact = stage.contacts[spec.name]
             profile = contact.profile()
             ratio = contact.at_nodes(stage.elasticity.volume_ratio())
-            load = stage.slipping(spec.name, stroke) * profile.load
+            load = shares.get(spec.name, 1.0) * profile.load
             share += worn_share(contour, profile, sliding.worn_depth(spec.wear_rate) * load / ratio)
             here[:] = at_points(contour, profile, spec.wear_rate.highest * load / profile.weight)
             half += 0.5 * sliding.worn_distance(spec.wear_rate) * (before - here)

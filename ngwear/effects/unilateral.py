@@ -51,8 +51,8 @@ class UnilateralContact(Term):
     compliance : ng.Parameter
         kappa [mm/MPa].
     slips_in_part : bool
-        Set by a friction that sticks: kappa is then times ``share``, constant on each surface element and 1 at first,
-        what slips there over the way that the surface slides.
+        Set by a friction that sticks: kappa is then times ``share``, linear between mesh nodes and 1 at first, what
+        slips there over the way that the surface slides.
     softness : ng.Parameter
         Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
         it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
@@ -148,7 +148,7 @@ class UnilateralContact(Term):
         give = self.lengths(body) / self.modulus
         kappa = self.compliance
         if self.slips_in_part:
-            self.share = ng.GridFunction(ng.SurfaceL2(body.mesh, order=0))
+            self.share = ng.GridFunction(ng.H1(body.mesh, order=1))
             self.share.vec[:] = 1.0
             kappa = kappa * self.share
         self._augmentation = c = 1 / (0.5 * self.softness * give + kappa)
