@@ -2,8 +2,9 @@
 
 Incompressible (K/G = 1e4, so that normal and tangential tractions do not couple), rigid shaft R = 400 mm, load per mm
 of thickness P that of a half width a = 1 mm, mu = 0.02, k = 5 mm²/N. The shaft goes to and fro by 5.2 um; the block
-stands on two thin legs, which give way to it like a spring, so that the friction Q goes to and fro by the same from stroke to
-stroke whatever wears (to 0.5 %); on a bonded block of finite height the stick zone would grow as the contact settles.
+stands on two thin legs, which give way to it like a spring, so that the friction Q goes to and fro by the same from
+stroke to stroke whatever wears (to 0.5 %); on a bonded block of finite height the stick zone would grow as the contact
+settles.
 
 What slips wears until it carries no pressure; what sticks, |x| < c, keeps its size and its shape (M. Ciavarella and
 D.A. Hills, J. Strain Anal. 34 (1999) 113; I.G. Goryacheva, P.T. Rajeev and T.N. Farris, J. Tribol. 123 (2001) 848; for
