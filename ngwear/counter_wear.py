@@ -38,8 +38,11 @@ def place(stage: Stage, counters: Counters, index: int, sliding: Strokes) -> Non
         contact.turned = float(ways(stage.scene.program, index, sliding)[0].mean())
 
 
-def worn(stage: Stage, counters: Counters, index: int, sliding: Strokes) -> Counters:
-    """The surfaces after the strokes: each of their points loses ``k2 int p dx`` over the places that it passes."""
+def worn(stage: Stage, counters: Counters, index: int, sliding: Strokes, shares: dict[str, Array]) -> Counters:
+    """The surfaces after the strokes: each of their points loses ``k2 int p dx`` over the places that it passes.
+
+    Where a contact's nodes slip only a share of the way, the loss is that share of it.
+    """
     passes = ways(stage.scene.program, index, sliding)
     after = {}
     for spec in stage.scene.contacts:
@@ -47,5 +50,7 @@ def worn(stage: Stage, counters: Counters, index: int, sliding: Strokes) -> Coun
             contact = stage.contacts[spec.name]
             ends, pressure = contact.imprint()
             wear = spec.counter_wear_rate * pressure * (sliding.repeats / len(passes))
+            if spec.name in shares:
+                wear = wear * shares[spec.name][contact.profile().edges]
             after[spec.name] = counters[spec.name].swept(ends - contact.turned, wear, passes)
     return after

@@ -109,21 +109,15 @@ class Stage:
         state[:] = keep
 
     def shares(self, stroke: Stroke) -> dict[str, Array]:
-        """What each mesh edge slips in the stroke just solved over its travel [-], of each friction that sticks."""
+        """What the contact's nodes slip in the stroke just solved over its travel [-], of each friction that sticks."""
         sticking = {name: f for name, f in self.frictions.items() if isinstance(f, StickSlip)}
-        return {name: friction.slid() / stroke.travel for name, friction in sticking.items()}
+        return {name: self.contacts[name].edges_to_nodes(f.slid()) / stroke.travel for name, f in sticking.items()}
 
     def set_shares(self, shares: dict[str, Array] | None) -> None:
         """Let wear in the next solve follow these shares; everything slips where none are known."""
         for name, contact in self.contacts.items():
             if contact.share is not None:
-                contact.set_edge_values(contact.share, 1.0 if shares is None else shares[name])
-
-    def slipping(self, contact: str, stroke: Stroke) -> Array | float:
-        """What the contact's nodes slip in the stroke just solved over its travel [-]."""
-        if self.contacts[contact].share is None:
-            return 1.0
-        return self.contacts[contact].edges_to_nodes(self.shares(stroke)[contact])
+                contact.set_share(1.0 if shares is None else shares[name])
 
     def stretched_guess(self) -> bool:
         """Stretch an axisymmetric part, at constant volume, until it clears its shafts; False if none overlaps it.

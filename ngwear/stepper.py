@@ -21,6 +21,7 @@ from ngwear.errors import ConvergenceError, GeometryError, MeshError, SceneError
 from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
 from ngwear.geometry.sizing import smoothed
+from ngwear.lasting_slip import lasting
 from ngwear.refinement import mounting_field, outgrown, wanted_size
 from ngwear.remesh import is_due, remesh, still_to_slide
 from ngwear.scene import Scene, Stroke
@@ -311,7 +312,7 @@ class Stepper:
         problem.set_loads(stage.stroke_loads(stroke))
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
-        stage.set_shares(phase.shares)
+        stage.set_shares(lasting(self.scene.program.cycle, state.phases, index, sliding.repeats))
         counter_wear.place(stage, state.counters, index, sliding)
         if state.memory is not None:
             state.memory.enter(stage.memory, plan, index)

@@ -12,6 +12,7 @@ from ngwear import counter_wear
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede
+from ngwear.lasting_slip import lasting
 from ngwear.remesh import remesh
 from ngwear.scene import Scene
 from ngwear.state import State
@@ -32,7 +33,8 @@ class Wearing:
     Implicit wear of second order in the step. The outline is foreseen: it moves to where the mean pressure of the last
     step would take it, so that the rubber is as thin, and lies where, it will at the end of the step's last stroke; the
     depth of the solve is counted from there. Then ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in ``wear.backward``.
-    Without a last step on record it is backward Euler on the outline as it was: of first order.
+    Without a last step on record, and where friction may stick, it is backward Euler on the outline as it was: of first
+    order.
 
     Attributes
     ----------
@@ -64,8 +66,9 @@ class Wearing:
         ways = wearing.ways
         if scene.wear.scheme == "implicit" and phase.mean is not None:
             share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
+            share *= wearing._slides
             wearing.own, wearing.last = 1.0 - share, (share * ways)[:, None] * phase.mean
-            wearing._foresee(ways[:, None] * phase.mean, later or {})
+            wearing._foresee(wearing._foreseen(index, sliding), later or {})
             wearing.last *= wearing.shrunk
         implicit = scene.wear.scheme == "implicit"
         for spec, own, known in zip(scene.contacts, wearing.own, wearing.last - wearing.ahead, strict=True):
@@ -85,6 +88,16 @@ class Wearing:
         """``int k ds`` over the highest k of each contact [mm]."""
         return self._ways(self.sliding)
 
+    @property
+    def _slides(self) -> Array:
+        """1 for each contact that slides in full, 0 for one that may stick: what has slipped may stick now."""
+        stage = self.state.stage
+        return np.array([float(not stage.contacts[c.name].slips_in_part) for c in stage.scene.contacts])
+
+    def _foreseen(self, kind: int, sliding: Strokes) -> Array:
+        """Depth that the mean pressure of a kind's last step wears at the points of the outline [mm], each contact."""
+        return (self._slides * self._ways(sliding))[:, None] * self.state.phases[kind].mean
+
     def _ways(self, sliding: Strokes) -> Array:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
 
@@ -92,7 +105,7 @@ class Wearing:
         edges, whole = worn_edges(self.state.stage.scene), depth.sum(axis=0)
         for kind, sliding in later.items():
             if self.state.phases[kind].mean is not None:
-                whole = whole + (self._ways(sliding)[:, None] * self.state.phases[kind].mean).sum(axis=0)
+                whole = whole + self._foreseen(kind, sliding).sum(axis=0)
         half = 0.5 * self.outline.lengths * self.outline.on(edges)
         try:
             foreseen = recede(self.outline, whole * (half + np.roll(half, 1)), edges)
@@ -118,8 +131,8 @@ class Wearing:
         """
         state, outline, phase = self.state, self.outline, self.state.phases[self.index]
         stage, scene = state.stage, state.stage.scene
-        stroke = scene.program.cycle[self.index]
-        state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding)
+        shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
+        state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off = np.zeros(len(outline)), np.zeros(len(outline))
         pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
         for k, spec in enumerate(scene.contacts):
@@ -127,7 +140,7 @@ class Wearing:
                 continue
             contact = stage.contacts[spec.name]
             profile = contact.profile()
-            rate = spec.wear_rate.highest * stage.slipping(spec.name, stroke) * profile.load / profile.weight
+            rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
             depth = self.own[k] * ways[k] * rate + contact.from_points(self.last[k])
             ratio = contact.at_nodes(stage.elasticity.volume_ratio())
             share += worn_share(outline, profile, depth * profile.weight / ratio)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT, Unknowns
-from ngwear.effects.contact_profile import ContactProfile
+from ngwear.effects.contact_profile import ContactProfile, nodes
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.body import Body
 from ngwear.surfaces import RigidSurface, WornProfile
@@ -83,7 +83,7 @@ class Contact(UnilateralContact):
         return field
 
     def _lay_samples(self, body: Body, region: ng.Region) -> None:
-        """Mapped points at both ends of each mesh edge in contact, in the order of the outline."""
+        """Mapped points at both ends and in the middle of each mesh edge in contact, in the order of the outline."""
         line = body.outline
         self.positions = line.on(self.edges)
         rule = ng.IntegrationRule([(0.0,), (1.0,)], [0.5, 0.5])
@@ -96,6 +96,8 @@ class Contact(UnilateralContact):
         turned = np.linalg.norm(place[:, 0] - start, axis=1) > np.linalg.norm(place[:, 1] - start, axis=1)
         points[turned] = points[turned][:, ::-1]
         self._points = np.ascontiguousarray(points.ravel())
+        middle = ng.IntegrationRule([(0.5,)], [1.0])
+        self._middles = np.ascontiguousarray(body.mesh.MapToAllElements(middle, region)[rows])
 
     def _sample(self, field: ng.CoefficientFunction) -> Array:
         return np.asarray(field(self._points)).reshape(-1, 2)
@@ -183,8 +185,7 @@ class Contact(UnilateralContact):
         return np.interp(ends, np.arange(len(values) + 1), np.append(values, values[0]))
 
     def sample_middles(self, field: ng.CoefficientFunction) -> Array:
-        """Mean at both ends of each mesh edge, in the order of the outline; shape (m,)."""
-        return self._sample(field).mean(axis=1)
+        return np.asarray(field(self._middles)).ravel()
 
     def edge_values(self, field: ng.GridFunction) -> Array:
         """Values of a field that is constant on each mesh edge, in the order of the outline; shape (m,)."""
@@ -196,13 +197,24 @@ class Contact(UnilateralContact):
         dofs = [field.space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in elements]
         field.vec.FV().NumPy()[dofs] = values
 
+    def set_share(self, values: Array | float) -> None:
+        """Give ``share`` its values at the nodes of ``profile``."""
+        vertices = self._body.outline.vertices[self.positions]
+        _, node = nodes(self._body, self.positions)
+        self.share.vec.FV().NumPy()[vertices] = np.broadcast_to(values, node.max() + 1)[node]
+
     def at_nodes(self, field: ng.CoefficientFunction) -> Array:
         """Values of a field at the nodes of ``profile``, averaged over the edges that meet there."""
         return ContactProfile.average(self._body, self.positions, self._sample(field))
 
     def edges_to_nodes(self, values: Array) -> Array:
-        """Values of the mesh edges at the nodes of ``profile``: means of the edges that meet there."""
-        return ContactProfile.average(self._body, self.positions, np.column_stack([values, values]))
+        """Slip of the mesh edges at the nodes of ``profile``: harmonic means of the edges that meet there.
+
+        A node of an edge that sticks does not slip. Were it worn, the edge would lose its pressure and slip next, and
+        the stick zone vanish edge by edge.
+        """
+        resistance = 1 / np.maximum(np.column_stack([values, values]), 1e-300)
+        return 1 / ContactProfile.average(self._body, self.positions, resistance)
 
     def touching(self) -> NDArray[np.bool_]:
         """Which of the mesh edges in ``positions`` carry pressure."""

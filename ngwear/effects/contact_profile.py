@@ -77,7 +77,7 @@ class ContactProfile:
         cls, body: Body, positions: NDArray[np.intp], *, pressure: Array, stretch: Array, place: Array, gap: Array
     ) -> ContactProfile:
         """Build from samples at both ends of each mesh edge; ``place`` of shape (m, 2, 2), the others (m, 2)."""
-        t, node = _nodes(body, positions)
+        t, node = nodes(body, positions)
         ends = body.outline.t[positions]
         length = body.contour.arc_lengths(ends[:, 0], ends[:, 1])
         first, second = pressure.T
@@ -103,7 +103,7 @@ class ContactProfile:
     @staticmethod
     def average(body: Body, positions: NDArray[np.intp], samples: Array) -> Array:
         """Mean at each node of samples at the ends of the mesh edges, shape (m, 2)."""
-        t, node = _nodes(body, positions)
+        t, node = nodes(body, positions)
         return np.bincount(node.ravel(), samples.ravel(), len(t)) / np.bincount(node.ravel(), minlength=len(t))
 
     def zones(self, *, threshold: float = 1e-3) -> list[Zone]:
@@ -159,7 +159,7 @@ def _grading_bias(node: NDArray[np.intp], length: Array, mean: Array, n: int) ->
     return np.where(inner, jump(mean) / apart * jump(length) / 3, 0.0)
 
 
-def _nodes(body: Body, positions: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp]]:
+def nodes(body: Body, positions: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp]]:
     """Contour parameters of the nodes, ascending, and the node at both ends of each mesh edge, shape (m, 2)."""
     ends = np.round(body.outline.t[positions] % len(body.base), 9)
     t, node = np.unique(ends, return_inverse=True)

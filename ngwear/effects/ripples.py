@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 
 import ngsolve as ng
+import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
 from ngwear.effects.contact import Contact
+from ngwear.effects.contact_profile import ContactProfile
 
 SHIFT = 0.25  # of a mesh edge
 TOUCHING = 1e-2  # of the highest pressure: what is reckoned as contact
@@ -52,10 +54,11 @@ class Ripples:
 
     def gather(self) -> None:
         """Take P_s from the present state."""
-        profile = self._contact.profile()
+        profile, body, positions = self._contact.profile(), self._unknowns.body, self._contact.positions
 
         def averaged(nodal: Array) -> Array:
-            return self._contact.edges_to_nodes(nodal[profile.edges].mean(axis=1))
+            middles = nodal[profile.edges].mean(axis=1)
+            return ContactProfile.average(body, positions, np.stack([middles, middles], axis=1))
 
         nodal = profile.nominal_pressure
         smooth = self._contact.pressure_vector(averaged(2 * nodal - averaged(nodal))[profile.edges])

@@ -51,8 +51,8 @@ class UnilateralContact(Term):
     compliance : ng.Parameter
         kappa [mm/MPa].
     slips_in_part : bool
-        Set by a friction that sticks: kappa is then times ``share``, constant on each surface element and 1 at first,
-        what slips there over the way that the surface slides.
+        Set by a friction that sticks: kappa is then times ``share``, linear between mesh nodes and 1 at first, what
+        slips there over the way that the surface slides.
     worn : ng.GridFunction or None
         Depth that is worn in the same step whatever P [mm per reference area], of a contact that keeps one.
     softness : ng.Parameter
@@ -151,7 +151,7 @@ class UnilateralContact(Term):
         give = self.lengths(body) / self.modulus
         kappa = self.compliance
         if self.slips_in_part:
-            self.share = ng.GridFunction(ng.SurfaceL2(body.mesh, order=0))
+            self.share = ng.GridFunction(ng.H1(body.mesh, order=1))
             self.share.vec[:] = 1.0
             kappa = kappa * self.share
         self._augmentation = c = 1 / (0.5 * self.softness * give + kappa)

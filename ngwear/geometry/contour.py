@@ -97,8 +97,10 @@ class Contour:
     @cached_property
     def area(self) -> float:
         """Area of the polygon [mm²]."""
+        # Cross products with the segments add up to the area; with the next points they would cancel, and round.
         x, y = (self.points - self.points[0]).T
-        return float(0.5 * (x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+        dx, dy = (np.roll(self.points, -1, axis=0) - self.points).T
+        return float(0.5 * (x @ dy - y @ dx))
 
     @cached_property
     def turning(self) -> Array:

@@ -25,6 +25,7 @@ CASES: dict[str, str] = {
     "three_arms": "ngwear.verify.three_arms",
     "p1a": "ngwear.verify.p1a",
     "partial_slip": "ngwear.verify.partial_slip",
+    "partial_slip_wear": "ngwear.verify.partial_slip_wear",
     "indentation": "ngwear.verify.indentation",
     "pin_on_plate": "ngwear.verify.pin_on_plate",
     "ring": "ngwear.verify.ring",

@@ -129,3 +129,11 @@ def test_controls_are_linear_in_the_data(circle):
     ring = circle(20)
     d = np.random.default_rng(1).normal(size=(20, 2)) * 1e-3
     assert np.allclose(ring.controls(ring.points + d), ring.bezier + ring.controls(d), atol=1e-13)
+
+
+def test_area_of_many_points_is_exact_enough_for_one_stroke_of_wear(circle):
+    many = circle(4000, radius=100.0)
+    x, y = many.points.T.tolist()
+    ahead = [*range(1, 4000), 0]
+    exact = 0.5 * math.fsum(x[i] * y[j] - y[i] * x[j] for i, j in enumerate(ahead))
+    assert abs(many.area - exact) < 2e-15 * exact

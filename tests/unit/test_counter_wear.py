@@ -81,6 +81,17 @@ def test_surface_loses_what_the_law_wears_off_it(tmp_path, write_sheet, changes)
     assert again.counters["roller"].depth.tolist() == state.counters["roller"].depth.tolist()
 
 
+def test_surface_that_sticks_in_part_wears_where_it_slips(tmp_path, write_sheet):
+    moves = tuple((old.replace("10.0", "0.02"), new.replace("10.0", "0.02")) for old, new in TO_AND_FRO[:1])
+    short = (("travel = 10.0", moves[0][1]), TO_AND_FRO[1], ("friction = 0.1", "friction = 0.3"))
+    stepper = Stepper(read_scene(write_sheet(tmp_path, WEARS, *short)))
+    state = stepper.start()
+    while not stepper.finished(state):
+        state = stepper.advance(state)
+    assert 0 < state.ledger.worn < 0.5 * K * 0.5 * 12 * 0.02, "the middle sticks"
+    assert state.counters["roller"].area == pytest.approx(COUNTER_K / K * state.ledger.worn, rel=0.02)
+
+
 def test_a_worn_plate_comes_away(tmp_path, write_sheet):
     scenes = [read_scene(write_sheet(tmp_path / name, *PLATE, *TO_AND_FRO, *more)) for name, more in NEITHER_AND_BOTH]
     alone, both = (run(scene, figures=False) for scene in scenes)

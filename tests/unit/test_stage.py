@@ -1,10 +1,18 @@
-"""First touch of a surface under force."""
+"""What a scene becomes on a mesh."""
 
 import numpy as np
 
+from ngwear.effects.contact import Contact
+from ngwear.effects.elasticity import Elasticity
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.fields.kinematics import PlaneStrain
+from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
+from ngwear.refinement import mounting_field
 from ngwear.scene import Accuracy, ContactSpec, Program, Scene, Stroke, SupportSpec
+from ngwear.scenefile import read_scene
+from ngwear.stage import Stage
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Plane
 
@@ -28,3 +36,22 @@ def test_surface_under_force_finds_several_ridges_of_one_height():
     contact = state.stage.contacts["lid"]
     assert abs(contact.force()[1] + 0.2) < 1e-8
     assert len(contact.profile().zones()) == 3
+
+
+def test_scene_without_friction_has_the_unknowns_and_the_solver_of_elasticity_and_contact(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, ("friction = 0.1", "friction = 0.0")))
+    (spec,) = scene.contacts
+    body = Body(scene.contour, mounting_field(scene))
+    contact = Contact(spec.name, spec.edges, spec.surface, force_controlled=True, modulus=scene.rubber.shear_modulus)
+    terms = [Elasticity(scene.rubber), contact]
+    by_hand = Problem(body, PlaneStrain(), terms, supports=[Support(("bottom",))])
+    made = Stage(scene, body)
+    assert made.frictions == {}
+    assert made.problem.names == by_hand.names
+    assert made.problem.space.ndof == by_hand.space.ndof
+    assert made.problem.symmetric
+    assert by_hand.symmetric
+    made.first_touch()
+    by_hand.state.vec.data = made.problem.state.vec
+    assert made.problem.tangent().flags == by_hand.tangent().flags
+    assert made.problem.solver.name == by_hand.solver.name

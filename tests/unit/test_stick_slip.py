@@ -74,6 +74,21 @@ def test_friction_never_exceeds_its_limit_nor_helps_the_slip():
     assert 0 < abs(sticks.force()[0]) <= MU * abs(contact.force()[1]) * (1 + 1e-9)
 
 
+def test_a_node_beside_an_edge_that_sticks_does_not_slip():
+    _, contact, _ = pressed(PlaneStrain(), StickSlip)
+    edges = contact.profile().edges
+    slip = np.linspace(0.5, 1.5, len(edges))
+    slip[: len(edges) // 2] = 0.0
+    at_nodes = contact.edges_to_nodes(slip)
+    stuck = np.unique(edges[slip == 0])
+    assert (at_nodes[stuck] < 1e-12).all()
+    beyond = np.setdiff1d(edges, stuck)
+    assert len(beyond) > 2
+    assert (at_nodes[beyond] > 0.9).all()
+    contact.set_share(at_nodes)
+    assert contact.sample_middles(contact.share) == pytest.approx(at_nodes[edges].mean(axis=1), abs=1e-12)
+
+
 def test_state_that_is_not_committed_leaves_no_trace():
     problem, _, sticks = pressed(PlaneStrain(), StickSlip)
     start = problem.state.vec.FV().NumPy().copy()

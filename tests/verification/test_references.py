@@ -9,11 +9,19 @@ from ngwear.errors import SceneError
 from ngwear.verify import CASES, verify
 from ngwear.verify.base import Check
 
-SLOW = ("hunter_transient", "pin_on_plate", "shaft_on_plate", "rod_seal", "rod_seal_jumps", "rod_seal_filled")
+SLOW = (
+    "hunter_transient",
+    "partial_slip_wear",
+    "pin_on_plate",
+    "shaft_on_plate",
+    "rod_seal",
+    "rod_seal_jumps",
+    "rod_seal_filled",
+)
 QUICK = tuple(case for case in CASES if case not in SLOW)
 # Missed, with the reason in the case's docstring; a check that comes to pass must leave this list.
 MISSED = {
-    "shaft_on_plate": {f"profile, {name} against 200, L1 over area [-]" for name in ("as shipped", "12 equal steps")},
+    "partial_slip_wear": {f"greatest depth [mm], elements of {patch} mm" for patch in (0.1, 0.05)},
     "p1a": {"half width at d = 0.30 mm [mm]", "half width at F = 4 N/mm [mm]"},
 }
 
