@@ -216,6 +216,12 @@ class Contact(UnilateralContact):
         resistance = 1 / np.maximum(np.column_stack([values, values]), 1e-300)
         return 1 / ContactProfile.average(self._body, self.positions, resistance)
 
+    def least_stretch(self) -> tuple[float, Array]:
+        """Least stretch da/dA of the named edges, and the reference place of that mesh edge's middle [mm]."""
+        u = self._state[DISPLACEMENT]
+        stretch = self.sample_middles(self._kinematics.area_stretch(u, ng.Grad(u)))
+        return float(stretch.min()), self.end_places()[int(stretch.argmin())].mean(axis=0)
+
     def touching(self) -> NDArray[np.bool_]:
         """Which of the mesh edges in ``positions`` carry pressure."""
         return self.end_pressures().mean(axis=1) > 1e-6 * self.modulus

@@ -6,6 +6,7 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array
+from ngwear.effects.contact import Contact
 from ngwear.effects.friction import Friction, FullSliding
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
@@ -14,12 +15,13 @@ FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by
 # Least principal stretch of a free surface in plane strain: creases (Hong et al., Appl. Phys. Lett. 95 (2009) 111901)
 # and wrinkles (Biot, Appl. Sci. Res. A 12 (1963) 168).
 CREASING, WRINKLING = 0.65, 0.544
+REMEDIES = "lower the friction or the load, go there in smaller steps, or take a stiffer rubber"
 NEAR = 1.03  # times the first: how far from it the last equilibrium before a failure may be
 
 
 def diagnosis(problem: Problem) -> str:
     """Sentences for the message of a walk that gave up; empty if nothing stands out."""
-    found = [_unheld(problem), _unstable_surface(problem), _unsteady_sliding(problem)]
+    found = [_unheld(problem), _unstable_surface(problem)]
     return "".join(f"\n{sentence}" for sentence in found if sentence)
 
 
@@ -81,32 +83,26 @@ def _rigid_motions(problem: Problem) -> list[tuple[str, Array]]:
 
 
 def _unstable_surface(problem: Problem) -> str:
-    """Friction that compresses the surface until it creases."""
-    rubbing = [t for t in problem.terms if isinstance(t, Friction)]
-    if not rubbing or problem.points is None:
-        return ""
-    dim = problem.body.mesh.dim
-    strain = problem.points.strain(problem.state.vec.FV().NumPy())[..., : dim * dim]
-    gradient = strain.reshape(*strain.shape[:-1], dim, dim) + np.eye(dim)
-    least = np.linalg.svd(gradient, compute_uv=False)[..., -1]
-    worst = np.unravel_index(least.argmin(), least.shape)
-    if least[worst] > NEAR * CREASING:
-        return ""
-    place = ", ".join(f"{x:.4g}" for x in problem.points.places[worst])
-    friction = max(rubbing, key=lambda term: term.contact.peak())
-    contact, peak = friction.contact, friction.contact.peak()
-    return (
-        f"friction of {friction.mean():.3g} under p/G = {peak / contact.modulus:.2g} at contact '{contact.name}' "
-        f"compresses the rubber at ({place}) to {least[worst]:.2g} of its length; a surface creases from {CREASING} "
-        f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: control the force instead of the "
-        "place and load it in smaller steps, lower the friction, or take a stiffer rubber"
-    )
-
-
-def _unsteady_sliding(problem: Problem) -> str:
-    """Contacts on which waves would grow as they run."""
-    sliding = [t for t in problem.terms if isinstance(t, FullSliding) and t.margin() < 0]
-    return "; ".join(
-        f"sliding at contact '{t.contact.name}' would not stay steady: waves grow along it (margin {t.margin():.2g})"
-        for t in sliding
-    )
+    """Friction that compresses the surface until it creases, or makes waves grow along it."""
+    found = []
+    for term in problem.terms:
+        if isinstance(term, Friction) and isinstance(term.contact, Contact) and term.contact.peak() > 0:
+            contact = term.contact
+            slip = abs(term.slip.Get()) if isinstance(term, FullSliding) else 1.0
+            told = (
+                f"friction of {slip * term.mean():.3g} under p/G = {contact.peak() / contact.modulus:.2g} at contact "
+            )
+            told += f"'{contact.name}' "
+            least, place = contact.least_stretch()
+            if least <= NEAR * CREASING:
+                at = ", ".join(f"{x:.4g}" for x in place)
+                found.append(
+                    f"{told}compresses the surface at ({at}) to {least:.2g} of its length; it creases from {CREASING} "
+                    f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: {REMEDIES}"
+                )
+            elif isinstance(term, FullSliding) and term.margin() < 0:
+                found.append(
+                    f"{told}is more than steady sliding bears: waves grow along the surface as they run (margin "
+                    f"{term.margin():.2g}): {REMEDIES}"
+                )
+    return "; ".join(found)

@@ -23,7 +23,7 @@ from ngwear.verify.locking import displacement_error
 RUBBER = {"c10": 0.6, "c01": 0.15, "bulk_modulus": 1000.0}
 FORCE, DEPTH = 4.0, 0.30  # N/mm, mm
 P1A = {"indentation": 0.2538, "force": 5.3572, "pressure": 2.039, "pressure under force": 1.671}
-WRINKLES = r"friction of {} under p/G = [\d.]+ at contact 'roller' compresses the rubber .* a surface creases"
+WAVES = r"friction of [\d.]+ under p/G = [\d.]+ at contact 'roller' is more than steady sliding bears"
 GENTLY = StepOptions(first=0.05)
 APPROACH, PRESS, SLIP, TRAVEL = "roller approach [mm]", "roller force [N]", "roller slip", "roller travel [mm]"
 
@@ -182,16 +182,16 @@ def _friction() -> list[Case]:
         Case(family, f"mu {mu:g}, F {force:g} N/mm", partial(slid, mu, force))
         for mu, force in ((1.0, 1.5), (1.5, 0.3), (1.0, FORCE))
     ]
-    cases.append(Case(family, "mu 1.5, F 4 N/mm", partial(slid, 1.5, FORCE), WRINKLES.format("1.5")))
+    cases.append(Case(family, "mu 1.5, F 4 N/mm", partial(slid, 1.5, FORCE), WAVES))
     family = "stick, slip and reversal"
     pairs = ((0.3, FORCE), (0.7, FORCE), (1.0, 0.8), (1.5, 0.3), (1.0, 1.5))
     cases += [Case(family, f"mu {mu:g}, F {f:g} N/mm", partial(stuck_and_slid, mu, f)) for mu, f in pairs]
     family = "friction at a given indentation"
     cases += [Case(family, f"mu {mu:g}", partial(indented, mu)) for mu in (0.0, 0.3, 0.5, 0.7)]
-    cases += [Case(family, f"mu {mu:g}", partial(indented, mu), WRINKLES.format(f"{mu:g}")) for mu in (1.0, 1.5)]
+    cases += [Case(family, f"mu {mu:g}", partial(indented, mu), WAVES) for mu in (1.0, 1.5)]
     family = "beyond the surface's stability"
     cases += [
-        Case(family, f"mu {mu:g}, p/G {times:g}", partial(pressed_far, mu, times), WRINKLES.format(f"{mu:g}"))
+        Case(family, f"mu {mu:g}, p/G {times:g}", partial(pressed_far, mu, times), WAVES)
         for mu, times in ((1.0, 3.0), (1.5, 3.0), (1.0, 10.0))
     ]
     return cases
