@@ -221,7 +221,7 @@ class Accuracy:
     grading: float = 0.25
     order: int = 2
     stress_error: float = 0.05
-    wear_error: float = 0.08
+    wear_error: float = 0.02
     folding_error: float = 1e-3
 
     def __post_init__(self) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -33,7 +34,9 @@ class Phase:
     pressure : array, shape (contacts, n)
         Highest wear rate times nominal pressure of each contact at the contour points [-], of the last time.
     mean : array, shape (contacts, n), or None
-        The same of what the last time wore over its way, and that way in ``ways`` [mm]; on this mesh.
+        The same of what the last time wore over its way, and that way in ``ways`` [mm].
+    error : float
+        Of what the last time wore, relative [-]; infinite if it is not known.
     shares : dict of str to array, or None
         What each mesh edge has slipped over the travel [-], where friction may stick, of the last time on this mesh.
     """
@@ -43,6 +46,7 @@ class Phase:
     pressure: Array | None = None
     mean: Array | None = None
     ways: Array | None = None
+    error: float = math.inf
     shares: dict[str, Array] | None = None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from ngwear import counter_wear
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.contour import Contour
-from ngwear.geometry.recession import recede
+from ngwear.geometry.recession import recede, refuse_worn_through
 from ngwear.lasting_slip import lasting
 from ngwear.remesh import remesh
 from ngwear.scene import Scene
@@ -23,6 +24,7 @@ from ngwear.wear.strokes import Strokes
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+CALM = 0.1  # error of a step over what it wears, up to which the next one may rely on it
 AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
 
 
@@ -33,8 +35,8 @@ class Wearing:
     Implicit wear of second order in the step. The outline is foreseen: it moves to where the mean pressure of the last
     step would take it, so that the rubber is as thin, and lies where, it will at the end of the step's last stroke; the
     depth of the solve is counted from there. Then ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in ``wear.backward``.
-    Without a last step on record, and where friction may stick, it is backward Euler on the outline as it was: of first
-    order.
+    Where friction may stick, and after a step whose error is large or not known, it is backward Euler on the outline as
+    it was: of first order, and sound where a contact has only begun to spread.
 
     Attributes
     ----------
@@ -64,7 +66,7 @@ class Wearing:
         n, count = len(outline), len(scene.contacts)
         wearing = cls(state, index, sliding, outline, np.ones(count), np.zeros((count, n)), np.zeros((count, n)))
         ways = wearing.ways
-        if scene.wear.scheme == "implicit" and phase.mean is not None:
+        if scene.wear.scheme == "implicit" and phase.error <= CALM:
             share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
             share *= wearing._slides
             wearing.own, wearing.last = 1.0 - share, (share * ways)[:, None] * phase.mean
@@ -104,7 +106,7 @@ class Wearing:
     def _foresee(self, depth: Array, later: dict[int, Strokes]) -> None:
         edges, whole = worn_edges(self.state.stage.scene), depth.sum(axis=0)
         for kind, sliding in later.items():
-            if self.state.phases[kind].mean is not None:
+            if self.state.phases[kind].error <= CALM:
                 whole = whole + self._foreseen(kind, sliding).sum(axis=0)
         half = 0.5 * self.outline.lengths * self.outline.on(edges)
         try:
@@ -115,7 +117,8 @@ class Wearing:
         except (GeometryError, MeshError) as error:
             log.info("%s: the outline is not foreseen", error)
             return
-        self.ahead = depth
+        moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
+        self.ahead = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
 
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.
@@ -147,9 +150,10 @@ class Wearing:
             pressure[k], mean[k] = at_points(outline, profile, rate), at_points(outline, profile, depth / ways[k])
             if phase.pressure is not None:
                 off += ways[k] * (mean[k] - 0.5 * (self.shrunk * phase.pressure[k] + pressure[k]))
-        known = phase.pressure is not None
+        known, error = phase.pressure is not None, float(np.abs(off) @ _widths(state.contour))
+        phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
-            state.ledger.area_error += float(np.abs(off) @ _widths(state.contour))
+            state.ledger.area_error += error
             before = np.zeros(len(outline)) if state.depth_error is None else state.depth_error
             state.depth_error = before + np.abs(off)
             state.ledger.depth_error = float(state.depth_error.max())
@@ -194,5 +198,6 @@ def _follow(state: State, outline: Contour, worn: Contour) -> None:
             f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; go on with new meshes "
             "by wear.remesh = 'limit' or 'due', or begin with larger elements (accuracy.patch)"
         )
+    refuse_worn_through(worn)
     log.info("%s: a new mesh is needed", why)
     remesh(state, worn)

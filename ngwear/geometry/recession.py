@@ -108,17 +108,30 @@ def healed(before: Contour, after: Array) -> Contour:
     for i in range(n):
         j = (i + 1) % n
         if moved[i] or moved[j]:
-            swept.append(MultiPoint([before.points[i], before.points[j], after[j], after[i]]).convex_hull)
+            hull = MultiPoint([before.points[i], before.points[j], after[j], after[i]]).convex_hull
+            if isinstance(hull, Polygon):  # a segment that moves along itself sweeps nothing
+                swept.append(hull)
     whole = Polygon(before.points)
     left: Any = whole.difference(union_all(swept, grid_size=1e-7), grid_size=1e-7)
     left = left.buffer(-OPENING, join_style="mitre").buffer(OPENING, join_style="mitre")
     pieces = list(left.geoms) if isinstance(left, MultiPolygon) else [left]
     pieces = sorted((p for p in pieces if not p.is_empty), key=lambda p: p.area)
-    if not pieces or pieces[-1].area < 0.9 * whole.area:
+    if not pieces or pieces[-1].area < 0.9 * sum(p.area for p in pieces):
         place = before.points[moved].mean(axis=0).round(4).tolist()
         raise GeometryError(f"the section is worn through near {place}")
     ring = pieces[-1].exterior
     return _renamed(before, after, _with_points(np.array(ring.coords)[:-1], after))
+
+
+def refuse_worn_through(contour: Contour) -> None:
+    """GeometryError if a section is nowhere thicker than what healing would take off, or falls apart by it."""
+    from shapely import Polygon
+
+    left = Polygon(contour.points).buffer(-OPENING)
+    pieces = getattr(left, "geoms", [left])
+    if left.is_empty or max(p.area for p in pieces) < 0.9 * left.area:
+        place = contour.points.mean(axis=0).round(4).tolist()
+        raise GeometryError(f"the section is worn through near {place}: less than {2 * OPENING} mm of it is left")
 
 
 def _with_points(ring: Array, points: Array) -> Array:

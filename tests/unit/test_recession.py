@@ -5,7 +5,7 @@ import pytest
 
 from ngwear.errors import GeometryError
 from ngwear.geometry.contour import Contour
-from ngwear.geometry.recession import recede, tidied
+from ngwear.geometry.recession import recede, refuse_worn_through, tidied
 from ngwear.geometry.sizing import SizeField
 
 
@@ -125,3 +125,20 @@ def test_tidied_merges_short_segments_and_keeps_the_area(circle):
     assert len(tidy) < len(crowded)
     assert tidy.area == pytest.approx(crowded.area, rel=1e-14)
     assert tidy.lengths.min() > 0.3 * np.median(tidy.lengths)
+
+
+def test_a_section_that_is_almost_gone_is_refused(rectangle):
+    refuse_worn_through(rectangle(1.0, 0.01))
+    with pytest.raises(GeometryError, match=r"worn through near .*less than 0\.004 mm"):
+        refuse_worn_through(rectangle(1.0, 0.003))
+
+
+def test_a_thin_sheet_that_loses_a_fifth_is_not_worn_through(rectangle):
+    """Its corners slide past a point of the sides, so that the outline has to be healed."""
+    sheet = rectangle(1.0, 0.1)
+    points = np.insert(sheet.points, 2, [1.0, 0.085], axis=0)
+    names = (*sheet.names[:2], sheet.names[1], *sheet.names[2:])
+    sheet = Contour(points, names, np.insert(sheet.corners, 2, False))
+    area = np.where([p[1] > 0.09 for p in sheet.points], 0.02 * 0.5, 0.0)
+    worn = recede(sheet, area, ("top",))
+    assert worn.area == pytest.approx(0.08, rel=1e-3)
