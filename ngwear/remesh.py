@@ -63,12 +63,19 @@ def remesh(state: State, contour: Contour | None = None) -> None:
         phase.vector, phase.rate, phase.shares = vector, None, None
         if phase.pressure is not None:
             phase.pressure = _moved_values(before, after, phase.pressure)
-            phase.mean = _moved_values(before, after, phase.mean)
+            phase.mean = _moved_depths(before, after, phase.mean)
     if state.depth_error is not None:
         state.depth_error = _moved_values(before, after, state.depth_error)
     state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
     state.ledger.remeshes += 1
     state.stage = stage
+
+
+def _moved_depths(before: Contour, after: Contour, depths: Array) -> Array:
+    """The same for depths, each row of which takes off the same area after as before."""
+    moved = _moved_values(before, after, depths)
+    old, new = (d @ (c.lengths + np.roll(c.lengths, 1)) for d, c in ((depths, before), (moved, after)))
+    return moved * np.divide(old, new, out=np.ones_like(old), where=new > 0)[:, None]
 
 
 def _moved_values(before: Contour, after: Contour, values: Array) -> Array:

@@ -32,7 +32,8 @@ class Phase:
     rate : array or None
         Its change per cycle, on the same mesh.
     pressure : array, shape (contacts, n)
-        Highest wear rate times nominal pressure of each contact at the contour points [-], of the last time.
+        Depth per way at the contour points that each contact would wear with its pressure at the end of the last time
+        and the highest wear rate, ``k P / J`` [-].
     mean : array, shape (contacts, n), or None
         The same of what the last time wore over its way, and that way in ``ways`` [mm].
     error : float

@@ -83,7 +83,8 @@ class Wearing:
     @property
     def shrunk(self) -> Array:
         """Lengths of the outline at its points over those of the foreseen one: loads stay, so pressures grow by it."""
-        return _widths(self.outline) / _widths(self.state.contour)
+        edges = worn_edges(self.state.stage.scene)
+        return _widths(self.outline, edges) / _widths(self.state.contour, edges)
 
     @property
     def ways(self) -> Array:
@@ -108,9 +109,8 @@ class Wearing:
         for kind, sliding in later.items():
             if self.state.phases[kind].error <= CALM:
                 whole = whole + self._foreseen(kind, sliding).sum(axis=0)
-        half = 0.5 * self.outline.lengths * self.outline.on(edges)
         try:
-            foreseen = recede(self.outline, whole * (half + np.roll(half, 1)), edges)
+            foreseen = recede(self.outline, whole * _widths(self.outline, edges), edges)
             if len(foreseen) != len(self.outline):
                 return
             self.state.stage.body.move_to(foreseen)
@@ -133,7 +133,7 @@ class Wearing:
             If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
         """
         state, outline, phase = self.state, self.outline, self.state.phases[self.index]
-        stage, scene = state.stage, state.stage.scene
+        stage, scene, edges = state.stage, state.stage.scene, worn_edges(state.stage.scene)
         shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
         state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off = np.zeros(len(outline)), np.zeros(len(outline))
@@ -144,22 +144,22 @@ class Wearing:
             contact = stage.contacts[spec.name]
             profile = contact.profile()
             rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
+            rate /= contact.at_nodes(stage.elasticity.volume_ratio())
             depth = self.own[k] * ways[k] * rate + contact.from_points(self.last[k])
-            ratio = contact.at_nodes(stage.elasticity.volume_ratio())
-            share += worn_share(outline, profile, depth * profile.weight / ratio)
+            share += worn_share(outline, profile, depth * profile.weight)
             pressure[k], mean[k] = at_points(outline, profile, rate), at_points(outline, profile, depth / ways[k])
             if phase.pressure is not None:
                 off += ways[k] * (mean[k] - 0.5 * (self.shrunk * phase.pressure[k] + pressure[k]))
-        known, error = phase.pressure is not None, float(np.abs(off) @ _widths(state.contour))
+        known, error = phase.pressure is not None, float(np.abs(off) @ _widths(state.contour, edges))
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
             state.ledger.area_error += error
             before = np.zeros(len(outline)) if state.depth_error is None else state.depth_error
             state.depth_error = before + np.abs(off)
             state.ledger.depth_error = float(state.depth_error.max())
-        new = recede(outline, share, worn_edges(scene))
+        new = recede(outline, share, edges)
         if len(new) == len(outline):
-            shrinks = _widths(state.contour) / _widths(new)
+            shrinks = _widths(state.contour, edges) / _widths(new, edges)
             pressure, mean = shrinks * pressure, shrinks * mean
         phase.pressure, phase.mean, phase.ways = pressure, mean, ways
         removed, worn = outline.area - new.area, float(share.sum())
@@ -178,9 +178,11 @@ def worn_edges(scene: Scene) -> tuple[str, ...]:
     return tuple(e for c in scene.contacts if c.wears for e in c.edges)
 
 
-def _widths(contour: Contour) -> Array:
-    """Length of the outline that belongs to each point [mm]."""
-    return 0.5 * (contour.lengths + np.roll(contour.lengths, 1))
+def _widths(contour: Contour, edges: tuple[str, ...]) -> Array:
+    """Length of the edges that belongs to each point of the outline [mm]; 1 off them."""
+    half = 0.5 * contour.lengths * contour.on(edges)
+    width = half + np.roll(half, 1)
+    return np.where(width > 0, width, 1.0)
 
 
 def _follow(state: State, outline: Contour, worn: Contour) -> None:

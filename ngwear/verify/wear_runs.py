@@ -14,11 +14,14 @@ from ngwear.materials import Hyperelastic
 from ngwear.scene import Accuracy, ContactSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Cylinder
+from ngwear.wear.backward import share_of_last
+from ngwear.wearing import CALM
 
 if TYPE_CHECKING:
     from ngwear.state import State
 
 CONTACT = "ring"
+QUADRATURE = 1e-5  # of the worn area
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,16 +83,22 @@ class CylinderOnBlock:
 class Book:
     """The law's integrals over the contact at every solve, apart from the stepper's own book; filled by ``steps``.
 
+    The stepper carries a step's mean pressure from point to point of an outline that shrinks, this book as one number:
+    they agree to ``QUADRATURE``.
+
     Attributes
     ----------
     worn : float
         ``sum k ds int P / J dA`` [mm²].
     load : float
         Resultant of the pressure, averaged over the sliding [N/mm].
+    mean : float
+        ``int P / J dA`` as the last step took it [N/mm]: of its end and, by backward differences, of the step before.
     """
 
     worn: float = 0.0
     load: float = 0.0
+    mean: float = 0.0
 
 
 def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
@@ -98,13 +107,17 @@ def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
     stepper, book = Stepper(scene), book or Book()
     state = stepper.start()
     while not stepper.finished(state):
+        (phase,) = state.phases
+        before = phase.ways[0] if phase.error <= CALM else 0.0
         state = stepper.advance(state)
         report = state.reports[0]
         profile = report.contacts[spec.name]
         distance = report.repeats * stroke.travel
         load = abs(float(report.forces[spec.name][1]))
         share = report.repeats / state.strokes
-        book.worn += spec.specific_wear_rate * distance * pressure_over_volume_ratio(scene, profile)
+        last = share_of_last(distance, before)
+        book.mean = last * book.mean + (1 - last) * pressure_over_volume_ratio(scene, profile)
+        book.worn += spec.specific_wear_rate * distance * book.mean
         book.load += share * (load - book.load)
         yield state
 

@@ -16,7 +16,16 @@ import numpy as np
 
 from ngwear.materials import NeoHooke
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.wear_runs import CONTACT, Book, CylinderOnBlock, depth_at, half_width, middle_pressure, steps
+from ngwear.verify.wear_runs import (
+    CONTACT,
+    QUADRATURE,
+    Book,
+    CylinderOnBlock,
+    depth_at,
+    half_width,
+    middle_pressure,
+    steps,
+)
 
 RUBBER = NeoHooke.from_young(1.0, 0.4995)
 RADIUS, HERTZ, WEAR_RATE, TRAVEL = 20.0, 0.05, 1e-3, 2000.0
@@ -56,6 +65,6 @@ def run() -> list[Check]:
     add("half width [mm]", half_width(profile), a, TOLERANCE)
     add("mean pressure within 0.8 a [MPa]", middle_pressure(profile, 0.8 * a), LOAD / (2 * a), TOLERANCE)
     removed = scene.contour.area - state.contour.area
-    add("area lost by the outline over the law's quadrature [-]", removed / book.worn, 1.0, 1e-6)
+    add("area lost by the outline over the law's quadrature [-]", removed / book.worn, 1.0, QUADRATURE)
     add("resultant of the pressure over the load [-]", book.load / LOAD, 1.0, 1e-6)
     return checks
