@@ -1,0 +1,54 @@
+"""Backward differences of the worn depth, and what a new mesh keeps of them."""
+
+import numpy as np
+import pytest
+
+from ngwear.geometry.contour import Contour
+from ngwear.remesh import _moved_depths, _moved_values
+from ngwear.wear.backward import share_of_last
+
+
+def worn(ways):
+    """dw/ds = 1 - w from w = 0, by the steps of ``wear.backward``."""
+    depth, mean, before = 0.0, 0.0, 0.0
+    for way in ways:
+        last = share_of_last(way, before)
+        pressure = (1 - depth - last * way * mean) / (1 + (1 - last) * way)  # p_1 = 1 - w_1
+        mean, before = last * mean + (1 - last) * pressure, way
+        depth += way * mean
+    return depth
+
+
+def test_weight_of_the_last_step():
+    assert share_of_last(1.0, 0.0) == 0.0
+    assert share_of_last(2.0, 2.0) == pytest.approx(1 / 3)
+    assert share_of_last(1e9, 1.0) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("grading", [1.0, 1.5])
+def test_order_is_two_with_even_and_with_growing_steps(grading):
+    errors = []
+    for n in (20, 40, 80):
+        places = 2.0 * np.linspace(0.0, 1.0, n + 1) ** grading
+        errors.append(abs(worn(np.diff(places)) - (1 - np.exp(-2.0))))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (orders > 1.85).all(), orders
+
+
+def test_a_stiff_step_lands_on_the_steady_state():
+    assert worn([1e6] * 4) == pytest.approx(1.0, abs=1e-5)
+
+
+def test_a_new_outline_keeps_the_area_of_depths_and_the_shape_of_values():
+    angle = np.linspace(0, 2 * np.pi, 41)[:-1]
+    fine = np.linspace(0, 2 * np.pi, 67)[:-1]
+    before, after = (
+        Contour(np.stack([np.cos(a), np.sin(a)], axis=1), ("rim",) * len(a), np.zeros(len(a), dtype=bool))
+        for a in (angle, fine)
+    )
+    depths = np.stack([1 + np.cos(angle), np.zeros_like(angle)])
+    values, moved = _moved_values(before, after, depths), _moved_depths(before, after, depths)
+    assert np.abs(values[0] - (1 + np.cos(fine))).max() < 5e-3
+    area = [d @ (c.lengths + np.roll(c.lengths, 1)) for d, c in ((depths[0], before), (moved[0], after))]
+    assert area[1] == pytest.approx(area[0], rel=1e-12)
+    assert (moved[1] == 0).all()
