@@ -11,8 +11,9 @@ long against the contact (a long track). In between it needs some twenty steps o
 to 2000 mm/s: 17, 5.5 to 6.6, 3.5, 4.2, 4.2 to 5.2, 4.0 and 156 to 211; over all speeds 35, what a curve costs.
 
 Equal is the error of the friction alone. Where the march is off by 1 % (20 to 50 mm/s) the direct solve makes do with
-two elements in the middle of the contact and fine ones at its ends, and its half length is 2 to 4 % off. Errors below
-``SETUP`` are counted as that: the problem itself, of finite strain on a finite block, is no nearer to the closed form.
+two elements in the middle of the contact and fine ones at its ends, and its half length is 2 to 4 % off.
+
+Missed: at 200 mm/s the march happens to be 0.06 % off, and the direct solve comes no nearer than 0.09 % however fine.
 """
 
 from __future__ import annotations
@@ -26,7 +27,6 @@ from ngwear.verify.base import Check
 from ngwear.verify.hunter import ARM, LOAD, LONG_TERM, RADIUS, RUBBER, SCALE, SPEEDS, TIME, closed_form
 
 FINENESS = 8.0  # of the march
-SETUP = 1e-3  # relative error that block and strain leave on the finest meshes: 8.7e-4 at 200 mm/s
 DIRECT = (1.0, 2.0, 4.0, 6.0, 8.0, 12.0)  # of the direct solve
 
 
@@ -56,14 +56,14 @@ def run() -> list[Check]:
     for speed in SPEEDS:
         exact = closed_form(speed)["friction"] / SCALE
         passage = slide_in_time(asperity, speed, fineness=FINENESS)
-        allowed = max(abs(passage.steady - exact), SETUP * exact)
+        allowed = abs(passage.steady - exact)
         direct, cost = at_least_as_close(asperity, speed, exact, allowed)
         marched, solved = marched + passage.cpu_seconds, solved + cost
         seconds = passage.cpu_seconds + cost
         friction, at = passage.steady * SCALE, f"at {speed:g} mm/s"
         check(f"friction coefficient in time {at} [-]", friction, exact * SCALE, 0.02, passage.cpu_seconds, "near")
         off = abs(direct.friction - exact)
-        quantity = f"relative error of the direct solve, at most that in time or of the set-up, {at} [-]"
+        quantity = f"relative error of the direct solve, at most that in time, {at} [-]"
         check(quantity, off / exact, allowed / exact, 0.0, seconds, "below")
         check(f"CPU seconds in time over direct {at} [-]", passage.cpu_seconds / cost, 3.0, 0.0, seconds, "above")
     check("CPU seconds in time over direct, all speeds [-]", marched / solved, 3.0, 0.0, marched + solved, "above")
