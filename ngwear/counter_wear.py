@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.scene import Program
+from ngwear.program import Program
 from ngwear.stage import Stage
 from ngwear.surfaces import WornProfile
 from ngwear.wear.strokes import Strokes

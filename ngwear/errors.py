@@ -27,6 +27,12 @@ class SceneError(NgwearError, ValueError):
         super().__init__(f"{place} = {value!r}: {remedy}")
 
 
+def require(ok: bool, place: str, value: object, remedy: str) -> None:
+    """Raise SceneError for what stands at a place in the scene unless it is all right."""
+    if not ok:
+        raise SceneError(place, value, remedy)
+
+
 class GeometryError(NgwearError):
     """A contour is not a simple, counter-clockwise, closed curve, or has been worn through."""
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.scene import Stroke
+from ngwear.program import Stroke
 from ngwear.state import Phase
 
 Array = NDArray[np.float64]

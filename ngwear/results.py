@@ -83,7 +83,7 @@ class Recorder:
             "maximum depth [mm]": float(depth.max()),
             "error estimate of maximum depth [mm]": ledger.depth_error,
         }
-        for name in dict.fromkeys(e for c in scene.contacts if c.wears for e in c.edges):
+        for name in dict.fromkeys(scene.worn_edges):
             on = scene.contour.on((name,))
             row[f"depth at {name} [mm]"] = float(depth[on].max())
         for contact, profile in report.contacts.items():
@@ -149,7 +149,7 @@ class Recorder:
         }
         if radius is not None:
             out["worn volume [mm^3]"] = 2 * np.pi * radius
-        for name in dict.fromkeys(e for c in scene.contacts if c.wears for e in c.edges):
+        for name in dict.fromkeys(scene.worn_edges):
             out[f"{name} depth [mm]"] = float(depth[scene.contour.on((name,))].max())
         peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
         for kind in cycle:

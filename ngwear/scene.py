@@ -5,16 +5,12 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from ngwear.errors import SceneError
+from ngwear.errors import require
 from ngwear.geometry.contour import Contour
 from ngwear.laws import FrictionLaw, WearRate, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
+from ngwear.program import Program
 from ngwear.surfaces import RigidSurface
-
-
-def _require(ok: bool, place: str, value: object, remedy: str) -> None:
-    if not ok:
-        raise SceneError(place, value, remedy)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,29 +53,29 @@ class ContactSpec:
 
     def __post_init__(self) -> None:
         place = f"contact '{self.name}'"
-        _require(bool(self.edges), f"{place}.edges", self.edges, "name at least one edge")
+        require(bool(self.edges), f"{place}.edges", self.edges, "name at least one edge")
         if not isinstance(self.friction, FrictionLaw):
-            _require(self.friction >= 0, f"{place}.friction", self.friction, "must be at least 0")
+            require(self.friction >= 0, f"{place}.friction", self.friction, "must be at least 0")
         if not isinstance(self.specific_wear_rate, WearRate):
             rate = self.specific_wear_rate
-            _require(rate >= 0, f"{place}.specific_wear_rate", rate, "must be at least 0 mm²/N")
+            require(rate >= 0, f"{place}.specific_wear_rate", rate, "must be at least 0 mm²/N")
         counter = self.counter_wear_rate
-        _require(counter >= 0, f"{place}.counter_wear_rate", counter, "must be at least 0 mm²/N")
+        require(counter >= 0, f"{place}.counter_wear_rate", counter, "must be at least 0 mm²/N")
         remedy = "give the part a specific_wear_rate as well: its error chooses the jumps"
-        _require(counter == 0 or self.wears, f"{place}.counter_wear_rate", counter, remedy)
-        _require(
+        require(counter == 0 or self.wears, f"{place}.counter_wear_rate", counter, remedy)
+        require(
             self.slides or self.sticks is not False,
             f"{place}.sticks",
             self.sticks,
             "a surface that stands still (slides = false) cannot be in full sliding: leave sticks out",
         )
-        _require(
+        require(
             self.slides or not self.wears,
             f"{place}.specific_wear_rate",
             self.specific_wear_rate,
             "a surface that stands still (slides = false) wears nothing: leave its wear rate out",
         )
-        _require(
+        require(
             self.force is None or self.force > 0, f"{place}.force", self.force, "must be greater than 0 (it presses)"
         )
 
@@ -118,79 +114,6 @@ class SupportSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stroke:
-    """One phase of the cycle.
-
-    Parameters
-    ----------
-    name : str
-    travel : float
-        Sliding distance [mm], > 0.
-    direction : float
-        Along the surfaces' tangent (their normal turned clockwise): 1 forward, -1 backward.
-    pressure : float
-        Sealed pressure [MPa], >= 0.
-    speed : float or None
-        Of the sliding [mm/s], > 0; only rubber with memory asks for it.
-    """
-
-    name: str
-    travel: float
-    direction: float = 1.0
-    pressure: float = 0.0
-    speed: float | None = None
-
-    def __post_init__(self) -> None:
-        place = f"program.stroke '{self.name}'"
-        _require(self.travel > 0, f"{place}.travel", self.travel, "must be greater than 0 mm")
-        _require(-1 <= self.direction <= 1, f"{place}.direction", self.direction, "must lie between -1 and 1")
-        _require(self.pressure >= 0, f"{place}.pressure", self.pressure, "must be at least 0 MPa")
-        _require(self.speed is None or self.speed > 0, f"{place}.speed", self.speed, "must be greater than 0 mm/s")
-
-    @property
-    def duration(self) -> float:
-        """Time that the stroke takes [s]; infinity without a speed."""
-        return math.inf if self.speed is None else self.travel / self.speed
-
-
-@dataclass(frozen=True, kw_only=True)
-class Program:
-    """Mounting, then the strokes of ``cycle`` in turn until ``strokes`` are done.
-
-    Parameters
-    ----------
-    cycle : tuple of Stroke
-    strokes : int
-    rest : float
-        How long the part sits mounted before the first stroke [s], > 0; for ever, until rubber with memory has relaxed,
-        unless given.
-    """
-
-    cycle: tuple[Stroke, ...]
-    strokes: int
-    rest: float = math.inf
-
-    def __post_init__(self) -> None:
-        _require(bool(self.cycle), "program.stroke", self.cycle, "give at least one stroke")
-        _require(self.strokes >= 0, "program.strokes", self.strokes, "must be at least 0")
-        _require(
-            self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without it the part relaxes fully"
-        )
-
-    def slid(self, strokes: int) -> float:
-        """Sliding distance after so many strokes [mm]."""
-        full, part = divmod(strokes, len(self.cycle))
-        return full * sum(s.travel for s in self.cycle) + sum(s.travel for s in self.cycle[:part])
-
-    @property
-    def duration(self) -> float:
-        """Time that all strokes take [s]."""
-        full, part = divmod(self.strokes, len(self.cycle))
-        times = [stroke.duration for stroke in self.cycle]
-        return (full * sum(times) if full else 0.0) + sum(times[:part])
-
-
-@dataclass(frozen=True, kw_only=True)
 class Accuracy:
     """Knobs that trade time for error.
 
@@ -225,14 +148,14 @@ class Accuracy:
     folding_error: float = 1e-3
 
     def __post_init__(self) -> None:
-        _require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
-        _require(self.coarse >= self.patch, "accuracy.coarse", self.coarse, "must be at least the patch size")
-        _require(self.mounting >= self.patch, "accuracy.mounting", self.mounting, "must be at least the patch size")
-        _require(0 < self.grading <= 1, "accuracy.grading", self.grading, "must lie between 0 and 1")
-        _require(self.order in (2,), "accuracy.order", self.order, "must be 2")
-        _require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
-        _require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
-        _require(
+        require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
+        require(self.coarse >= self.patch, "accuracy.coarse", self.coarse, "must be at least the patch size")
+        require(self.mounting >= self.patch, "accuracy.mounting", self.mounting, "must be at least the patch size")
+        require(0 < self.grading <= 1, "accuracy.grading", self.grading, "must lie between 0 and 1")
+        require(self.order in (2,), "accuracy.order", self.order, "must be 2")
+        require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
+        require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
+        require(
             0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
         )
 
@@ -263,12 +186,10 @@ class Wear:
     remesh: str = "due"
 
     def __post_init__(self) -> None:
-        _require(
-            self.scheme in ("implicit", "explicit"), "wear.scheme", self.scheme, "must be 'implicit' or 'explicit'"
-        )
-        _require(self.step in ("jump", "each"), "wear.step", self.step, "must be 'jump' or 'each'")
-        _require(self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
-        _require(
+        require(self.scheme in ("implicit", "explicit"), "wear.scheme", self.scheme, "must be 'implicit' or 'explicit'")
+        require(self.step in ("jump", "each"), "wear.step", self.step, "must be 'jump' or 'each'")
+        require(self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
+        require(
             self.remesh in ("due", "limit", "never"), "wear.remesh", self.remesh, "must be 'due', 'limit' or 'never'"
         )
 
@@ -289,7 +210,7 @@ class Save:
     vtk: bool = False
 
     def __post_init__(self) -> None:
-        _require(all(n > 0 for n in self.strokes), "save.strokes", self.strokes, "must be whole numbers above 0")
+        require(all(n > 0 for n in self.strokes), "save.strokes", self.strokes, "must be whole numbers above 0")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -323,7 +244,7 @@ class Scene:
         users += [(f"support[{i}].edges", s.edges) for i, s in enumerate(self.supports)]
         if self.fluid is not None:
             users += [("fluid.edges", self.fluid.edges), ("fluid.inlet", self.fluid.inlet)]
-            _require(
+            require(
                 set(self.fluid.inlet) <= set(self.fluid.edges) and bool(self.fluid.inlet),
                 "fluid.inlet",
                 self.fluid.inlet,
@@ -331,14 +252,14 @@ class Scene:
             )
         for place, edges in users:
             for edge in edges:
-                _require(edge in known, place, edge, f"the outline has no such edge; it has {list(known)}")
+                require(edge in known, place, edge, f"the outline has no such edge; it has {list(known)}")
         names = [c.name for c in self.contacts]
-        _require(len(set(names)) == len(names), "contact.name", names, "must differ from each other")
+        require(len(set(names)) == len(names), "contact.name", names, "must differ from each other")
         if self.axisymmetric:
             lowest = float(self.contour.points[:, 1].min())
-            _require(lowest > 0, "contour", lowest, "an axisymmetric section must lie above the axis: radii > 0 mm")
+            require(lowest > 0, "contour", lowest, "an axisymmetric section must lie above the axis: radii > 0 mm")
         for stroke in self.program.cycle:
-            _require(
+            require(
                 stroke.pressure == 0 or self.fluid is not None,
                 f"program.stroke '{stroke.name}'.pressure",
                 stroke.pressure,
@@ -346,7 +267,7 @@ class Scene:
             )
             place = f"program.stroke '{stroke.name}'.speed"
             known_speed = stroke.speed is not None
-            _require(
+            require(
                 self.prony is None or known_speed,
                 place,
                 stroke.speed,
@@ -354,7 +275,7 @@ class Scene:
             )
             for contact in self.contacts:
                 law = contact.friction_law
-                _require(
+                require(
                     law is None or not law.depends_on_speed or known_speed,
                     place,
                     stroke.speed,
@@ -369,7 +290,7 @@ class Scene:
 
         centre = Polygon(self.contour.points).centroid
         gap = float(contact.surface.gap(centre.x, centre.y))
-        _require(
+        require(
             gap > 0 and math.isfinite(gap),
             f"contact '{contact.name}'.surface",
             contact.surface,
@@ -430,6 +351,11 @@ class Scene:
         shortest = min(stroke.travel for stroke in strokes)
         told = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
         return shortest < carried, told
+
+    @property
+    def worn_edges(self) -> tuple[str, ...]:
+        """Names of the edges that wear."""
+        return tuple(e for c in self.contacts if c.wears for e in c.edges)
 
     @property
     def followed(self) -> tuple[ContactSpec, ...]:

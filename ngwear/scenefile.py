@@ -13,7 +13,8 @@ from ngwear.input.laws import read_friction, read_wear_rate
 from ngwear.input.material import read_arms, read_material
 from ngwear.input.pin import pin_scene
 from ngwear.input.tables import coordinate, get, known, record, subtable, tables, typed
-from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
+from ngwear.program import Program, Stroke
+from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Save, Scene, SupportSpec, Wear
 from ngwear.sliding.scene import KIND as PIN
 from ngwear.sliding.scene import PinScene
 from ngwear.surfaces import Cylinder, Plane, RigidSurface

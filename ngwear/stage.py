@@ -18,7 +18,8 @@ from ngwear.errors import SceneError
 from ngwear.fields.background import Background
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.scene import ContactSpec, Scene, Stroke
+from ngwear.program import Stroke
+from ngwear.scene import ContactSpec, Scene
 from ngwear.surfaces import WornProfile
 
 Array = NDArray[np.float64]

@@ -32,10 +32,10 @@ class Phase:
     rate : array or None
         Its change per cycle, on the same mesh.
     pressure : array, shape (contacts, n)
-        Depth per way at the contour points that each contact would wear with its pressure at the end of the last time
-        and the highest wear rate, ``k P / J`` [-].
+        Area over way that each contact would wear at the contour points with its pressure at the end of the last time
+        and the highest wear rate, ``int k P / J ds`` [mm].
     mean : array, shape (contacts, n), or None
-        The same of what the last time wore over its way, and that way in ``ways`` [mm].
+        The same of what the last time wore over its way, ``ways`` [mm].
     error : float
         Of what the last time wore, relative [-]; infinite if it is not known.
     shares : dict of str to array, or None

@@ -22,16 +22,17 @@ from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
 from ngwear.geometry.sizing import smoothed
 from ngwear.lasting_slip import lasting
+from ngwear.program import Stroke
 from ngwear.refinement import mounting_field, outgrown, wanted_size
 from ngwear.remesh import is_due, remesh, still_to_slide
-from ngwear.scene import Scene, Stroke
+from ngwear.scene import Scene
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
 from ngwear.wear.archard import critical_distance
 from ngwear.wear.control import JumpControl
 from ngwear.wear.cycles import Plan
 from ngwear.wear.strokes import Strokes
-from ngwear.wearing import Wearing, worn_edges
+from ngwear.wearing import Wearing
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -78,7 +79,7 @@ class Stepper:
             If a surface that shall wear the part does not touch it in any stroke.
         """
         scene = self.scene
-        contour = smoothed(scene.contour, worn_edges(scene), 1.3 * scene.accuracy.patch)
+        contour = smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch)
         stage = Stage(scene, Body(contour, mounting_field(scene)))
         control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
         state = State(stage, [], control)

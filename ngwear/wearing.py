@@ -15,7 +15,6 @@ from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import recede, refuse_worn_through
 from ngwear.lasting_slip import lasting
 from ngwear.remesh import remesh
-from ngwear.scene import Scene
 from ngwear.state import State
 from ngwear.wear.archard import at_points, worn_share
 from ngwear.wear.backward import share_of_last
@@ -44,8 +43,10 @@ class Wearing:
         Before the wear.
     own : array, shape (contacts,)
         Weight of the pressure at the step's end, 1 - a [-].
-    last, ahead : array, shape (contacts, n)
-        Depth worn by the last step's mean pressure, ``kappa a q_0``, and depth taken off in the foreseen outline [mm].
+    last : array, shape (contacts, n)
+        Area at each point of the outline worn by the last step's mean pressure, of depth ``kappa a q_0`` [mm²].
+    ahead : array, shape (contacts, n)
+        Depth taken off in the foreseen outline [mm].
     """
 
     state: State
@@ -68,12 +69,13 @@ class Wearing:
         ways = wearing.ways
         if scene.wear.scheme == "implicit" and phase.error <= CALM:
             share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
-            share *= wearing._slides
-            wearing.own, wearing.last = 1.0 - share, (share * ways)[:, None] * phase.mean
-            wearing._foresee(wearing._foreseen(index, sliding), later or {})
-            wearing.last *= wearing.shrunk
+            area = wearing._foreseen(index, sliding)
+            share *= area.any(axis=1)
+            wearing.own, wearing.last = 1.0 - share, share[:, None] * area
+            wearing._foresee(area, later or {})
         implicit = scene.wear.scheme == "implicit"
-        for spec, own, known in zip(scene.contacts, wearing.own, wearing.last - wearing.ahead, strict=True):
+        depth = wearing.last / state.contour.widths(scene.worn_edges) - wearing.ahead
+        for spec, own, known in zip(scene.contacts, wearing.own, depth, strict=True):
             contact = state.stage.contacts[spec.name]
             contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
             if spec.wears:
@@ -81,36 +83,29 @@ class Wearing:
         return wearing
 
     @property
-    def shrunk(self) -> Array:
-        """Lengths of the outline at its points over those of the foreseen one: loads stay, so pressures grow by it."""
-        edges = worn_edges(self.state.stage.scene)
-        return _widths(self.outline, edges) / _widths(self.state.contour, edges)
-
-    @property
     def ways(self) -> Array:
         """``int k ds`` over the highest k of each contact [mm]."""
         return self._ways(self.sliding)
 
-    @property
-    def _slides(self) -> Array:
-        """1 for each contact that slides in full, 0 for one that may stick: what has slipped may stick now."""
-        stage = self.state.stage
-        return np.array([float(not stage.contacts[c.name].slips_in_part) for c in stage.scene.contacts])
-
     def _foreseen(self, kind: int, sliding: Strokes) -> Array:
-        """Depth that the mean pressure of a kind's last step wears at the points of the outline [mm], each contact."""
-        return (self._slides * self._ways(sliding))[:, None] * self.state.phases[kind].mean
+        """Area that the mean pressure of a kind's last step wears at the points of the outline [mm²], each contact.
+
+        None where friction may stick: what has slipped may stick now.
+        """
+        stage = self.state.stage
+        slides = np.array([not stage.contacts[c.name].slips_in_part for c in stage.scene.contacts])
+        return (slides * self._ways(sliding))[:, None] * self.state.phases[kind].mean
 
     def _ways(self, sliding: Strokes) -> Array:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
 
-    def _foresee(self, depth: Array, later: dict[int, Strokes]) -> None:
-        edges, whole = worn_edges(self.state.stage.scene), depth.sum(axis=0)
+    def _foresee(self, area: Array, later: dict[int, Strokes]) -> None:
+        whole = area.sum(axis=0)
         for kind, sliding in later.items():
             if self.state.phases[kind].error <= CALM:
                 whole = whole + self._foreseen(kind, sliding).sum(axis=0)
         try:
-            foreseen = recede(self.outline, whole * _widths(self.outline, edges), edges)
+            foreseen = recede(self.outline, whole, self.state.stage.scene.worn_edges)
             if len(foreseen) != len(self.outline):
                 return
             self.state.stage.body.move_to(foreseen)
@@ -118,7 +113,7 @@ class Wearing:
             log.info("%s: the outline is not foreseen", error)
             return
         moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
-        self.ahead = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
+        self.ahead = area * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
 
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.
@@ -133,7 +128,8 @@ class Wearing:
             If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
         """
         state, outline, phase = self.state, self.outline, self.state.phases[self.index]
-        stage, scene, edges = state.stage, state.stage.scene, worn_edges(state.stage.scene)
+        stage, scene = state.stage, state.stage.scene
+        width = state.contour.widths(scene.worn_edges)
         shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
         state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off = np.zeros(len(outline)), np.zeros(len(outline))
@@ -145,22 +141,21 @@ class Wearing:
             profile = contact.profile()
             rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
             rate /= contact.at_nodes(stage.elasticity.volume_ratio())
-            depth = self.own[k] * ways[k] * rate + contact.from_points(self.last[k])
-            share += worn_share(outline, profile, depth * profile.weight)
-            pressure[k], mean[k] = at_points(outline, profile, rate), at_points(outline, profile, depth / ways[k])
+            last = contact.from_points(self.last[k] / width) * profile.weight
+            last *= self.last[k].sum() / last.sum() if last.any() else 1.0
+            area = worn_share(outline, profile, self.own[k] * ways[k] * rate * profile.weight + last)
+            share += area
+            pressure[k], mean[k] = width * at_points(outline, profile, rate), area / ways[k]
             if phase.pressure is not None:
-                off += ways[k] * (mean[k] - 0.5 * (self.shrunk * phase.pressure[k] + pressure[k]))
-        known, error = phase.pressure is not None, float(np.abs(off) @ _widths(state.contour, edges))
+                off += area - 0.5 * ways[k] * (phase.pressure[k] + pressure[k])
+        known, error = phase.pressure is not None, float(np.abs(off).sum())
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
             state.ledger.area_error += error
             before = np.zeros(len(outline)) if state.depth_error is None else state.depth_error
-            state.depth_error = before + np.abs(off)
+            state.depth_error = before + np.abs(off) / width
             state.ledger.depth_error = float(state.depth_error.max())
-        new = recede(outline, share, edges)
-        if len(new) == len(outline):
-            shrinks = _widths(state.contour, edges) / _widths(new, edges)
-            pressure, mean = shrinks * pressure, shrinks * mean
+        new = recede(outline, share, scene.worn_edges)
         phase.pressure, phase.mean, phase.ways = pressure, mean, ways
         removed, worn = outline.area - new.area, float(share.sum())
         state.ledger.worn += worn
@@ -171,18 +166,6 @@ class Wearing:
         state.ledger.removed += removed
         _follow(state, outline, new)
         return known
-
-
-def worn_edges(scene: Scene) -> tuple[str, ...]:
-    """Names of the edges that wear."""
-    return tuple(e for c in scene.contacts if c.wears for e in c.edges)
-
-
-def _widths(contour: Contour, edges: tuple[str, ...]) -> Array:
-    """Length of the edges that belongs to each point of the outline [mm]; 1 off them."""
-    half = 0.5 * contour.lengths * contour.on(edges)
-    width = half + np.roll(half, 1)
-    return np.where(width > 0, width, 1.0)
 
 
 def _follow(state: State, outline: Contour, worn: Contour) -> None:

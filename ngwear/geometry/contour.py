@@ -114,6 +114,12 @@ class Contour:
         """The different edge names in the order in which they appear."""
         return tuple(dict.fromkeys(self.names))
 
+    def widths(self, edges: tuple[str, ...] | None = None) -> Array:
+        """Half the lengths of both segments at each point [mm], of those of named edges only; 1 off them."""
+        half = 0.5 * self.lengths * (1.0 if edges is None else self.on(edges))
+        width = half + np.roll(half, 1)
+        return np.where(width > 0, width, 1.0)
+
     def on(self, edges: tuple[str, ...]) -> NDArray[np.bool_]:
         """Return which segments belong to the named edges, shape (n,)."""
         return np.array([name in edges for name in self.names])

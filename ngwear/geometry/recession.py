@@ -50,7 +50,7 @@ def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contou
     if len(worn) == 0:
         return contour
     shorter = np.minimum(contour.lengths, np.roll(contour.lengths, 1))
-    typical = rest / (0.5 * (contour.lengths + np.roll(contour.lengths, 1)))
+    typical = rest / contour.widths()
     parts = int(np.ceil(np.max(typical[worn] / (MAX_SUBSTEP * shorter[worn]))))
     for _ in range(max(parts, 1)):
         points = points + _displacement(points, rest / max(parts, 1), contour, worn_edges)

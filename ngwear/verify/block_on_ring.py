@@ -26,7 +26,6 @@ from ngwear.materials import NeoHooke
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import (
     CONTACT,
-    QUADRATURE,
     Book,
     CylinderOnBlock,
     depth_at,
@@ -84,7 +83,7 @@ def run() -> list[Check]:
         add(f"half width after {metre} m [mm]", half_width(profile), wide, 0.02)
     removed = scene.contour.area - state.contour.area
     flat = BLOCK.wear_rate * BLOCK.load * 1e3 * METRES[-1]
-    add("area lost by the outline over the law's quadrature [-]", removed / book.worn, 1.0, QUADRATURE)
+    add("area lost by the outline over the law's quadrature [-]", removed / book.worn, 1.0, 1e-6)
     add("area lost by the outline over the stepper's book [-]", removed / state.ledger.worn, 1.0, 1e-6)
     add("resultant of the pressure over the load [-]", book.load / BLOCK.load, 1.0, 1e-6)
     excess = arc_excess(0.0, 1e3 * METRES[-1]) / (1e3 * METRES[-1])

@@ -34,7 +34,8 @@ from numpy.typing import NDArray
 
 from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
-from ngwear.scene import Accuracy, ContactSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
+from ngwear.program import Program, Stroke
+from ngwear.scene import Accuracy, ContactSpec, Save, Scene, SupportSpec, Wear
 from ngwear.state import State
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Cylinder

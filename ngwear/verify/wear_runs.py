@@ -11,7 +11,8 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.geometry.contour import Contour
 from ngwear.materials import Hyperelastic
-from ngwear.scene import Accuracy, ContactSpec, Program, Save, Scene, Stroke, SupportSpec, Wear
+from ngwear.program import Program, Stroke
+from ngwear.scene import Accuracy, ContactSpec, Save, Scene, SupportSpec, Wear
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Cylinder
 from ngwear.wear.backward import share_of_last
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
     from ngwear.state import State
 
 CONTACT = "ring"
-QUADRATURE = 1e-5  # of the worn area
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,9 +82,6 @@ class CylinderOnBlock:
 @dataclass
 class Book:
     """The law's integrals over the contact at every solve, apart from the stepper's own book; filled by ``steps``.
-
-    The stepper carries a step's mean pressure from point to point of an outline that shrinks, this book as one number:
-    they agree to ``QUADRATURE``.
 
     Attributes
     ----------

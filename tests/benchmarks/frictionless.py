@@ -49,7 +49,8 @@ def by_hand():
 
 def through_scene():
     """What the program makes of a scene without friction."""
-    from ngwear.scene import ContactSpec, Program, Scene, Stroke, SupportSpec
+    from ngwear.program import Program, Stroke
+    from ngwear.scene import ContactSpec, Scene, SupportSpec
     from ngwear.stage import Stage
 
     body = sheet()

@@ -9,7 +9,8 @@ from physics import ROUGHNESS, Finding, body, book, near, pressure
 
 from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
-from ngwear.scene import Accuracy, ContactSpec, Program, Scene, Stroke, SupportSpec, Wear
+from ngwear.program import Program, Stroke
+from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Cylinder, Plane
 from ngwear.verify import stability_pair

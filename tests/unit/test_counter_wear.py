@@ -11,9 +11,9 @@ from ngwear.errors import SceneError
 from ngwear.explain import explain
 from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.wear import plot
+from ngwear.program import Program, Stroke
 from ngwear.result_file import read_result
 from ngwear.run import run
-from ngwear.scene import Program, Stroke
 from ngwear.scenefile import read_scene
 from ngwear.stepper import Stepper
 from ngwear.surfaces import Cylinder, Plane, WornProfile

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.lasting_slip import lasting
-from ngwear.scene import Stroke
+from ngwear.program import Stroke
 from ngwear.state import Phase
 
 OUT, BACK = Stroke(name="out", travel=2.0), Stroke(name="back", travel=2.0, direction=-1)

@@ -15,9 +15,9 @@ from ngwear.errors import SceneError
 from ngwear.explain import explain
 from ngwear.laws import ByPressure, Lubrication, Product, Stribeck, WearRate
 from ngwear.materials import MooneyRivlin, PronySeries
+from ngwear.program import Program, Stroke
 from ngwear.result_file import read_result
 from ngwear.run import run
-from ngwear.scene import Program, Stroke
 from ngwear.scenefile import read_scene
 from ngwear.sliding.pin import PinStage
 from ngwear.sliding.scene import Pin, PinMesh

@@ -4,7 +4,7 @@ import pytest
 from conftest import edited
 
 from ngwear.errors import GeometryError, SceneError
-from ngwear.scene import Program, Stroke
+from ngwear.program import Program, Stroke
 from ngwear.scenefile import read_scene
 
 ROLLER = 'surface = { type = "cylinder", centre = [2.0, 3.99], radius = 2.0, push = [0.0, -1.0] }'

@@ -9,8 +9,9 @@ from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
+from ngwear.program import Program, Stroke
 from ngwear.refinement import mounting_field
-from ngwear.scene import Accuracy, ContactSpec, Program, Scene, Stroke, SupportSpec
+from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec
 from ngwear.scenefile import read_scene
 from ngwear.stage import Stage
 from ngwear.stepper import Stepper

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.geometry.contour import Contour
-from ngwear.remesh import _moved_depths, _moved_values
+from ngwear.remesh import _moved_areas, _moved_values
 from ngwear.wear.backward import share_of_last
 
 
@@ -47,8 +47,9 @@ def test_a_new_outline_keeps_the_area_of_depths_and_the_shape_of_values():
         for a in (angle, fine)
     )
     depths = np.stack([1 + np.cos(angle), np.zeros_like(angle)])
-    values, moved = _moved_values(before, after, depths), _moved_depths(before, after, depths)
+    values = _moved_values(before, after, depths)
+    moved = _moved_areas(before, after, depths * before.widths())
     assert np.abs(values[0] - (1 + np.cos(fine))).max() < 5e-3
-    area = [d @ (c.lengths + np.roll(c.lengths, 1)) for d, c in ((depths[0], before), (moved[0], after))]
-    assert area[1] == pytest.approx(area[0], rel=1e-12)
+    assert moved[0].sum() == pytest.approx((depths[0] * before.widths()).sum(), rel=1e-12)
+    assert np.abs(moved[0] / after.widths() - (1 + np.cos(fine))).max() < 1e-2
     assert (moved[1] == 0).all()

@@ -1,0 +1,79 @@
+"""What moves: the strokes of a cycle, and how many of them."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ngwear.errors import require
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stroke:
+    """One phase of the cycle.
+
+    Parameters
+    ----------
+    name : str
+    travel : float
+        Sliding distance [mm], > 0.
+    direction : float
+        Along the surfaces' tangent (their normal turned clockwise): 1 forward, -1 backward.
+    pressure : float
+        Sealed pressure [MPa], >= 0.
+    speed : float or None
+        Of the sliding [mm/s], > 0; only rubber with memory asks for it.
+    """
+
+    name: str
+    travel: float
+    direction: float = 1.0
+    pressure: float = 0.0
+    speed: float | None = None
+
+    def __post_init__(self) -> None:
+        place = f"program.stroke '{self.name}'"
+        require(self.travel > 0, f"{place}.travel", self.travel, "must be greater than 0 mm")
+        require(-1 <= self.direction <= 1, f"{place}.direction", self.direction, "must lie between -1 and 1")
+        require(self.pressure >= 0, f"{place}.pressure", self.pressure, "must be at least 0 MPa")
+        require(self.speed is None or self.speed > 0, f"{place}.speed", self.speed, "must be greater than 0 mm/s")
+
+    @property
+    def duration(self) -> float:
+        """Time that the stroke takes [s]; infinity without a speed."""
+        return math.inf if self.speed is None else self.travel / self.speed
+
+
+@dataclass(frozen=True, kw_only=True)
+class Program:
+    """Mounting, then the strokes of ``cycle`` in turn until ``strokes`` are done.
+
+    Parameters
+    ----------
+    cycle : tuple of Stroke
+    strokes : int
+    rest : float
+        How long the part sits mounted before the first stroke [s], > 0; for ever, until rubber with memory has relaxed,
+        unless given.
+    """
+
+    cycle: tuple[Stroke, ...]
+    strokes: int
+    rest: float = math.inf
+
+    def __post_init__(self) -> None:
+        require(bool(self.cycle), "program.stroke", self.cycle, "give at least one stroke")
+        require(self.strokes >= 0, "program.strokes", self.strokes, "must be at least 0")
+        require(self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without it the part relaxes fully")
+
+    def slid(self, strokes: int) -> float:
+        """Sliding distance after so many strokes [mm]."""
+        full, part = divmod(strokes, len(self.cycle))
+        return full * sum(s.travel for s in self.cycle) + sum(s.travel for s in self.cycle[:part])
+
+    @property
+    def duration(self) -> float:
+        """Time that all strokes take [s]."""
+        full, part = divmod(self.strokes, len(self.cycle))
+        times = [stroke.duration for stroke in self.cycle]
+        return (full * sum(times) if full else 0.0) + sum(times[:part])
