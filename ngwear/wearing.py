@@ -143,7 +143,7 @@ class Wearing:
             rate /= contact.at_nodes(stage.elasticity.volume_ratio())
             last = contact.from_points(self.last[k] / width) * profile.weight
             last *= self.last[k].sum() / last.sum() if last.any() else 1.0
-            area = worn_share(outline, profile, self.own[k] * ways[k] * rate * profile.weight + last)
+            area = worn_share(state.contour, profile, self.own[k] * ways[k] * rate * profile.weight + last)
             share += area
             pressure[k], mean[k] = width * at_points(outline, profile, rate), area / ways[k]
             if phase.pressure is not None:
