@@ -57,8 +57,14 @@ def remesh(state: State, contour: Contour | None = None) -> None:
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
     stage = Stage(old.scene, body, state.background)
-    vectors = carry(old.problem, [p.vector for p in state.phases], stage.problem)
-    before, after = old.body.contour, body.contour
+    adopt(state, stage, carry(old.problem, [p.vector for p in state.phases], stage.problem))
+    state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
+    state.ledger.remeshes += 1
+
+
+def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
+    """Go on with another stage: the phases' vectors on it are given, what stands on the outline is carried over."""
+    before, after = state.contour, stage.body.contour
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
         if phase.pressure is not None:
@@ -66,8 +72,6 @@ def remesh(state: State, contour: Contour | None = None) -> None:
             phase.mean = _moved_areas(before, after, phase.mean)
     if state.depth_error is not None:
         state.depth_error = _moved_values(before, after, state.depth_error)
-    state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
-    state.ledger.remeshes += 1
     state.stage = stage
 
 

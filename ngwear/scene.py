@@ -11,6 +11,7 @@ from ngwear.laws import FrictionLaw, WearRate, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.program import Program
 from ngwear.surfaces import RigidSurface
+from ngwear.wear.deactivate import Deactivation
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -236,6 +237,7 @@ class Scene:
     supports: tuple[SupportSpec, ...] = ()
     accuracy: Accuracy = field(default_factory=Accuracy)
     wear: Wear = field(default_factory=Wear)
+    deactivation: Deactivation | None = None
     save: Save = field(default_factory=Save)
 
     def __post_init__(self) -> None:
@@ -283,6 +285,19 @@ class Scene:
                 )
         for contact in self.contacts:
             self._check_side(contact)
+        if self.deactivation is not None:
+            self._check_deactivation()
+
+    def _check_deactivation(self) -> None:
+        remedy = "must be 'never' in a scene that deactivates elements: its mesh loses them and is not made anew"
+        require(self.wear.remesh == "never", "wear.remesh", self.wear.remesh, remedy)
+        remedy = "elements can be deactivated in rubber without memory only: leave one of both out"
+        require(self.prony is None, "material.prony", self.prony, remedy)
+        remedy = "at least one contact must wear: below its edges the layers of elements lie"
+        require(bool(self.worn_edges), "contact.specific_wear_rate", 0.0, remedy)
+        thinnest = self.accuracy.patch
+        remedy = f"must be at least one element thick (accuracy.patch = {thinnest:g} mm)"
+        require(self.deactivation.depth >= thinnest, "deactivation.depth", self.deactivation.depth, remedy)
 
     def _check_side(self, contact: ContactSpec) -> None:
         """A rigid body that swallows the part, or that it can never reach, is on the wrong side."""

@@ -9,6 +9,7 @@ from typing import Any
 
 from ngwear.errors import SceneError
 from ngwear.geometry.contour_files import read_contour
+from ngwear.input.deactivation import read_deactivation
 from ngwear.input.laws import read_friction, read_wear_rate
 from ngwear.input.material import read_arms, read_material
 from ngwear.input.pin import pin_scene
@@ -65,7 +66,19 @@ def read_scene(path: Path | str) -> Scene | PinScene:
 
 
 def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
-    allowed = {"scene", "contour", "material", "contact", "fluid", "support", "program", "accuracy", "wear", "save"}
+    allowed = {
+        "scene",
+        "contour",
+        "material",
+        "contact",
+        "fluid",
+        "support",
+        "program",
+        "accuracy",
+        "wear",
+        "save",
+        "deactivation",
+    }
     known("", data, allowed)
     outline = subtable(data, "contour")
     known("contour.", outline, {"file"})
@@ -81,6 +94,7 @@ def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
         program=_program(subtable(data, "program")),
         accuracy=record(Accuracy, "accuracy", data.get("accuracy", {})),
         wear=record(Wear, "wear", data.get("wear", {})),
+        deactivation=read_deactivation(data["deactivation"]) if "deactivation" in data else None,
         save=record(Save, "save", data.get("save", {})),
     )
 

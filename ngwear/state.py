@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from ngwear.cycle_memory import CycleMemory
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.equilibrium.stepping import Work
 from ngwear.fields.background import Background
+from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.contour import Contour
 from ngwear.stage import Stage
 from ngwear.surfaces import WornProfile
@@ -67,6 +68,8 @@ class Ledger:
         Largest sum of the embedded errors of depth at one point of the outline [mm].
     remesh_jump : float
         Largest relative change of the section's area in a remesh [-].
+    lost : dict of Fate to float
+        Area of deactivated elements by cause [mm²].
     """
 
     worn: float = 0.0
@@ -75,11 +78,20 @@ class Ledger:
     depth_error: float = 0.0
     remesh_jump: float = 0.0
     remeshes: int = 0
+    lost: dict[Fate, float] = field(default_factory=lambda: dict.fromkeys(Fate, 0.0))
+
+    def copy(self) -> Ledger:
+        """A book of its own with the same entries."""
+        return replace(self, lost=dict(self.lost))
 
 
 @dataclass
 class State:
-    """An accepted state of a run; ``Stepper.advance`` turns one into the next."""
+    """An accepted state of a run; ``Stepper.advance`` turns one into the next.
+
+    ``fatigue`` and ``strained`` are what each element has used up of its life, and what the present cycle uses up so
+    far [-], of a scene whose damage adds up over cycles.
+    """
 
     stage: Stage
     phases: list[Phase]
@@ -91,6 +103,8 @@ class State:
     counters: dict[str, WornProfile] = field(default_factory=dict)
     memory: CycleMemory | None = None
     reports: list[StrokeReport] = field(default_factory=list)
+    fatigue: Array | None = None
+    strained: Array | None = None
 
     @property
     def background(self) -> Background | None:
@@ -110,6 +124,11 @@ class State:
     def contour(self) -> Contour:
         """The outline as it is now."""
         return self.stage.body.contour
+
+    @property
+    def cells(self) -> Cells | None:
+        """The elements as they are now, of a scene that deactivates some."""
+        return self.stage.body.now if self.stage.scene.deactivation is not None else None
 
 
 @dataclass(frozen=True)
@@ -143,6 +162,8 @@ class StrokeReport:
         Outline after the stroke's wear.
     ledger : Ledger
         Book after the stroke's wear.
+    cells : Cells or None
+        Elements after the stroke's wear, where a scene deactivates some.
     """
 
     phase: int
@@ -159,3 +180,4 @@ class StrokeReport:
     leaks: bool
     contour: Contour
     ledger: Ledger
+    cells: Cells | None = None

@@ -13,13 +13,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import counter_wear
+from ngwear import counter_wear, deactivation
 from ngwear.cycle_memory import CycleMemory
 from ngwear.drift import steady_cycles
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, SceneError
 from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
+from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.sizing import smoothed
 from ngwear.lasting_slip import lasting
 from ngwear.program import Stroke
@@ -79,34 +80,53 @@ class Stepper:
             If a surface that shall wear the part does not touch it in any stroke.
         """
         scene = self.scene
-        contour = smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch)
-        stage = Stage(scene, Body(contour, mounting_field(scene)))
+        stage = Stage(scene, self._body())
         control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
         state = State(stage, [], control)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         problem = stage.problem
         phases = len(scene.program.cycle)
         state.work.add(self._mount(stage))
+        if scene.deactivation is not None:
+            deactivation.begin(state)
         for i, stroke in enumerate(scene.program.cycle):
             stage.begin(problem.state.vec.FV().NumPy())
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
         self._refuse_idle_contacts(state)
-        ahead = still_to_slide(state)
-        while outgrown(state.stage, [p.vector for p in state.phases], sliding=ahead) and state.ledger.remeshes < 4:
-            remesh(state)
-            state.reports = []
-            for i, stroke in enumerate(scene.program.cycle):
-                sliding = self._strokes(i, 0)
-                Wearing.begin(state, i, sliding)
-                iterations = self._solve_phase(state, i, stroke, sliding, far=state.ledger.remeshes == 1)
-                state.reports.append(self._observe(state, i, iterations, sliding))
-            self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
+        if scene.deactivation is None:
+            self._refine(state)
+        else:
+            self._settle_cycle(state)
         if scene.arms is not None:
             self._remember(state)
         self.on_mount(1.0)
         return state
+
+    def _body(self) -> Body | ElementBody:
+        """The unworn section, meshed for mounting."""
+        scene = self.scene
+        if scene.deactivation is not None:
+            return deactivation.element_body(scene)
+        return Body(smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch), mounting_field(scene))
+
+    def _refine(self, state: State) -> None:
+        """Mesh anew until the mesh is fine where the strokes of the cycle want it."""
+        ahead = still_to_slide(state)
+        while outgrown(state.stage, [p.vector for p in state.phases], sliding=ahead) and state.ledger.remeshes < 4:
+            remesh(state)
+            self._settle_cycle(state, far=state.ledger.remeshes == 1)
+            self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
+
+    def _settle_cycle(self, state: State, *, far: bool = False) -> None:
+        """Solve each stroke of the cycle once, on the outline as it is."""
+        state.reports = []
+        for i, stroke in enumerate(self.scene.program.cycle):
+            sliding = self._strokes(i, 0)
+            Wearing.begin(state, i, sliding)
+            iterations = self._solve_phase(state, i, stroke, sliding, far=far)
+            state.reports.append(self._observe(state, i, iterations, sliding))
 
     def _refuse_idle_contacts(self, state: State) -> None:
         """A surface that never touches the part would wear nothing, without a word."""
@@ -232,8 +252,10 @@ class Stepper:
             "phases": [replace(p) for p in state.phases],
             "strokes": state.strokes,
             "memory": copy(state.memory),
+            "fatigue": state.fatigue,
+            "strained": copy(state.strained),
             "reports": state.reports,
-            "ledger": replace(state.ledger),
+            "ledger": state.ledger.copy(),
             "counters": state.counters,
             "depth_error": None if state.depth_error is None else state.depth_error.copy(),
         }
@@ -253,12 +275,17 @@ class Stepper:
         for k, (i, repeats) in enumerate(plan):
             sliding = self._strokes(i, begin + k, repeats)
             later = {j: self._strokes(j, begin + k + 1 + m, n - 1) for m, (j, n) in enumerate(plan[k + 1 :])}
-            wearing = Wearing.begin(state, i, sliding, later=later)
-            iterations = self._solve_phase(state, i, cycle[i], sliding, plan=plan)
+            outline, iterations, tears = state.contour, 0, True
+            while tears:
+                wearing = Wearing.begin(state, i, sliding, later=later)
+                iterations += self._solve_phase(state, i, cycle[i], sliding, plan=plan)
+                tears = self.scene.deactivation is not None and deactivation.tear(state, outline, repeats)
+                outline = outline if not tears else state.contour
             if memory is not None:
                 memory.leave(state.stage.memory, i)
             seen = self._observe(state, i, iterations, sliding)
             state.strokes += repeats
+            deactivation.tire(state, repeats, last=k == len(plan) - 1)
             known &= wearing.take()
             state.reports.append(
                 replace(
@@ -267,7 +294,8 @@ class Stepper:
                     repeats=repeats,
                     contour=state.contour,
                     counters=state.counters,
-                    ledger=replace(state.ledger),
+                    ledger=state.ledger.copy(),
+                    cells=state.cells,
                 )
             )
         if memory is not None:
@@ -351,7 +379,8 @@ class Stepper:
             counters=state.counters,
             leaks=stage.fluid is not None and stage.fluid.leaks,
             contour=state.contour,
-            ledger=replace(state.ledger),
+            ledger=state.ledger.copy(),
+            cells=state.cells,
         )
 
     def _approach(self, state: State, index: int, stroke: Stroke, work: Work) -> None:

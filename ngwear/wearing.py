@@ -9,10 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import counter_wear
+from ngwear import counter_wear, deactivation
 from ngwear.errors import GeometryError, MeshError
-from ngwear.geometry.contour import Contour
-from ngwear.geometry.recession import recede, refuse_worn_through
+from ngwear.geometry.contour import Contour, polygon_area
+from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.lasting_slip import lasting
 from ngwear.remesh import remesh
 from ngwear.state import State
@@ -155,8 +155,14 @@ class Wearing:
             before = np.zeros(len(outline)) if state.depth_error is None else state.depth_error
             state.depth_error = before + np.abs(off) / width
             state.ledger.depth_error = float(state.depth_error.max())
-        new = recede(outline, share, scene.worn_edges)
         phase.pressure, phase.mean, phase.ways = pressure, mean, ways
+        if scene.deactivation is not None:
+            points = receded(outline, share, scene.worn_edges)
+            state.ledger.worn += float(share.sum())
+            state.ledger.removed += outline.area - polygon_area(points)
+            deactivation.follow(state, outline, points)
+            return known
+        new = recede(outline, share, scene.worn_edges)
         removed, worn = outline.area - new.area, float(share.sum())
         state.ledger.worn += worn
         if abs(removed - worn) > AREA_GATE * worn:

@@ -30,7 +30,7 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     bodies as they are. Both problems must have the same unknowns.
     """
     search = PointSearch(old.body.mesh, _node_places(new), old.body.deformation)
-    near = {after.name: _neighbours(before, after) for before, after in _contact_pairs(old, new)}
+    near = {after.name: _neighbours(before, after) for before, after in contact_pairs(old, new)}
     keep = old.state.vec.FV().NumPy().copy()
     carried = []
     for state in states:
@@ -39,7 +39,7 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         out[:] = 0.0
         target = out.FV().NumPy()
         _take_inside(search, old, new, target)
-        for before, after in _contact_pairs(old, new):
+        for before, after in contact_pairs(old, new):
             index, weight, same, twin = near[after.name]
             ends = (before.profile().nominal_pressure[index] * weight).sum(axis=-1)
             ends[same] = before.end_pressures()[twin[same]]
@@ -47,7 +47,7 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
             if after.force_controlled:
                 target[new.part(after.travel_name)] = state[old.part(before.travel_name)]
         new.state.vec.data = out
-        for before, after in _sticking_pairs(old, new):
+        for before, after in sticking_pairs(old, new):
             *_, twin = near[after.contact.name]
             for name in after.tractions:
                 values = before.contact.edge_values(old.fields[name])[twin]
@@ -109,12 +109,14 @@ def _fill_harmonically(u: ng.GridFunction, marked: NDArray[np.bool_]) -> None:
     values[:] = HarmonicFill(matrix, np.fromiter(free, dtype=bool))(values)
 
 
-def _contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:
+def contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:
+    """Contacts of one problem beside those of another of the same scene."""
     before = {t.name: t for t in old.terms if isinstance(t, Contact)}
     return [(before[t.name], t) for t in new.terms if isinstance(t, Contact)]
 
 
-def _sticking_pairs(old: Problem, new: Problem) -> list[tuple[StickSlip, StickSlip]]:
+def sticking_pairs(old: Problem, new: Problem) -> list[tuple[StickSlip, StickSlip]]:
+    """Frictions that stick, likewise."""
     before = {t.contact.name: t for t in old.terms if isinstance(t, StickSlip)}
     return [(before[t.contact.name], t) for t in new.terms if isinstance(t, StickSlip)]
 

@@ -16,6 +16,14 @@ Array = NDArray[np.float64]
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]*")
 
 
+def polygon_area(points: Array) -> float:
+    """Area of a closed polygon, points of shape (n, 2), positive if it runs counter-clockwise [mm²]."""
+    # Cross products with the segments add up to the area; with the next points they would cancel, and round.
+    x, y = (points - points[0]).T
+    dx, dy = (np.roll(points, -1, axis=0) - points).T
+    return float(0.5 * (x @ dy - y @ dx))
+
+
 @dataclass(frozen=True)
 class Contour:
     """A closed, counter-clockwise outline; its polygon is the truth for area and worn area.
@@ -97,10 +105,7 @@ class Contour:
     @cached_property
     def area(self) -> float:
         """Area of the polygon [mm²]."""
-        # Cross products with the segments add up to the area; with the next points they would cancel, and round.
-        x, y = (self.points - self.points[0]).T
-        dx, dy = (np.roll(self.points, -1, axis=0) - self.points).T
-        return float(0.5 * (x @ dy - y @ dx))
+        return polygon_area(self.points)
 
     @cached_property
     def turning(self) -> Array:

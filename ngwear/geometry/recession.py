@@ -45,19 +45,25 @@ def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contou
     GeometryError
         If the section is worn through.
     """
+    points = receded(contour, area, worn_edges)
+    try:
+        return replace(contour, points=points)
+    except GeometryError:
+        return healed(contour, points)
+
+
+def receded(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Array:
+    """The outline's points after that, whether or not it then crosses itself; shape (n, 2) [mm]."""
     points, rest = contour.points, np.asarray(area, dtype=float)
     worn = np.flatnonzero(rest > 0)
     if len(worn) == 0:
-        return contour
+        return points
     shorter = np.minimum(contour.lengths, np.roll(contour.lengths, 1))
     typical = rest / contour.widths()
     parts = int(np.ceil(np.max(typical[worn] / (MAX_SUBSTEP * shorter[worn]))))
     for _ in range(max(parts, 1)):
         points = points + _displacement(points, rest / max(parts, 1), contour, worn_edges)
-    try:
-        return replace(contour, points=points)
-    except GeometryError:
-        return healed(contour, points)
+    return points
 
 
 def _displacement(points: Array, area: Array, contour: Contour, worn_edges: tuple[str, ...]) -> Array:

@@ -1,0 +1,175 @@
+"""The loop's part in deactivating elements: tear what bears too much, move the surface, filter what is distorted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.keep import keep
+from ngwear.errors import GeometryError, MeshError, require
+from ngwear.geometry.cells import Cells, Fate
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.element_body import ElementBody
+from ngwear.geometry.layers import layered
+from ngwear.remesh import adopt
+from ngwear.scene import Scene
+from ngwear.stage import Stage
+from ngwear.state import State
+from ngwear.wear.damage import Stresses
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+
+def element_body(scene: Scene) -> ElementBody:
+    """The section of a scene that deactivates elements, meshed in layers below the edges that wear."""
+    accuracy = scene.accuracy
+    return ElementBody(
+        layered(
+            scene.contour,
+            scene.worn_edges,
+            depth=scene.deactivation.depth,
+            edge=accuracy.patch,
+            coarse=accuracy.coarse,
+            grading=accuracy.grading,
+        )
+    )
+
+
+def stresses(stage: Stage) -> Stresses:
+    """Stresses of the living elements in the present state, in the mesh's order."""
+    problem = stage.problem
+    points = problem.points
+    points.follow()
+    strain = points.strain(problem.state.vec.FV().NumPy())
+    piola, _ = stage.elasticity.response(strain, tangent=False)
+    gradient = strain[..., :4] + np.array([1.0, 0.0, 0.0, 1.0])
+    p, f = (a[..., :4].reshape(*a.shape[:-1], 2, 2) for a in (piola, gradient))
+    volume = (points.volumes * np.linalg.det(f) * (1.0 + strain[..., 4])).sum(axis=1)  # deformed
+    # sigma = P F^T / J, so that its integral over the deformed volume is that of P F^T over the reference one.
+    kirchhoff = p @ np.swapaxes(f, -1, -2)
+    mean = (kirchhoff * points.volumes[..., None, None]).sum(axis=1) / volume[:, None, None]
+    energy = (stage.elasticity.energy(strain) * points.volumes).sum(axis=1) / points.volumes.sum(axis=1)
+    return Stresses(np.stack([mean[:, 0, 0], mean[:, 1, 1], 0.5 * (mean[:, 0, 1] + mean[:, 1, 0])], axis=1), energy)
+
+
+def exhaustion(state: State, repeats: int) -> Array:
+    """How much of what it bears each element of the section is under after so many such cycles; 0 where it is lost."""
+    stage, cells = state.stage, state.stage.body.cells
+    criterion = stage.scene.deactivation.damage
+    out = np.zeros(len(cells.fate))
+    out[cells.living] = criterion.exhaustion(stresses(stage))
+    if criterion.accumulates:
+        out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
+    return np.where(cells.living & cells.quads, out, 0.0)
+
+
+def begin(state: State) -> None:
+    """Refuse rubber that tears while it is mounted; no element has used up anything of its life yet.
+
+    Raises
+    ------
+    SceneError
+        With the place where the mounted part bears most.
+    """
+    cells, damage = state.stage.body.cells, state.stage.scene.deactivation.damage
+    if damage is None:
+        return
+    state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
+    used = exhaustion(state, 1)
+    worst = int(used.argmax())
+    x, y = cells.points[cells.corners[worst]].mean(axis=0)
+    require(
+        used[worst] < 1.0,
+        "deactivation.damage.critical",
+        damage.critical,
+        f"the part would tear while it is fitted, at ({x:.3f}, {y:.3f}) mm: there the {damage.name} reaches "
+        f"{used[worst]:.3g} of what it bears; mount it with less force or interference, or take a stronger rubber",
+    )
+
+
+def tear(state: State, outline: Contour, repeats: int) -> bool:
+    """Deactivate what the present state tears, from the outline as it was before the solve; return whether any.
+
+    Raises
+    ------
+    GeometryError
+        If nothing is left, or the section is cut in two.
+    """
+    damage = state.stage.scene.deactivation.damage
+    if damage is None:
+        return False
+    torn = exhaustion(state, repeats) >= 1.0
+    if not torn.any():
+        return False
+    state.stage.body.move_to(outline)
+    lose(state, state.stage.body.now, torn, Fate.TORN)
+    return True
+
+
+def tire(state: State, repeats: int, *, last: bool) -> None:
+    """Note how the accepted stroke has strained the elements, of a criterion that adds up over cycles."""
+    deactivation = state.stage.scene.deactivation
+    if deactivation is None or deactivation.damage is None or not deactivation.damage.accumulates:
+        return
+    living = state.stage.body.cells.living
+    state.strained[living] = np.maximum(state.strained[living], deactivation.damage.exhaustion(stresses(state.stage)))
+    if last:
+        state.fatigue = state.fatigue + repeats * state.strained
+        state.strained = np.zeros_like(state.strained)
+
+
+def lose(state: State, cells: Cells, dead: Mask, fate: Fate) -> None:
+    """Take elements out of the section, book their areas by cause, and go on with what is left."""
+    left = booked(state, cells, dead, fate)
+    go_on(state, left)
+
+
+def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
+    """The section without some elements, their areas in the book of the state."""
+    left = cells.without(dead, fate)
+    areas = cells.areas()
+    newly = cells.living & ~left.living
+    for cause in (Fate.TORN, Fate.DISTORTED, Fate.LOOSE):
+        state.ledger.lost[cause] += float(areas[newly & (left.fate == cause)].sum())
+    return left
+
+
+def go_on(state: State, cells: Cells) -> None:
+    """Set the scene up on the elements that are left; states are kept, as first guesses."""
+    old = state.stage
+    try:
+        stage = Stage(old.scene, ElementBody(cells))
+    except MeshError as error:
+        raise GeometryError(f"what is left of the section is held or loaded by nothing: {error}") from None
+    adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
+
+
+def follow(state: State, outline: Contour, points: Array) -> None:
+    """Let the surface nodes go from the outline to worn places, shape (n, 2), and filter what is then too distorted.
+
+    Raises
+    ------
+    MeshError
+        If an element would turn inside out and the scene has no filter.
+    GeometryError
+        If nothing is left, or the section is cut in two.
+    """
+    body, deactivation = state.stage.body, state.stage.scene.deactivation
+    cells, sieve = body.cells.moved(points), deactivation.distortion
+    if sieve is None or not sieve.finds(cells).any():
+        body.move_to(replace(outline, points=points))
+        return
+    way = points - outline.points
+    gone = {int(p): d for p, d in zip(cells.rim, way, strict=True) if d.any()}
+    before = cells.area
+    while (distorted := sieve.finds(cells)).any():
+        cells, went = sieve.pass_on(cells, distorted, gone)
+        gone |= went
+        shifted = cells.area
+        state.ledger.lost[Fate.DISTORTED] += before - shifted  # nodes beneath went with the surface
+        cells = booked(state, cells, distorted | sieve.finds(cells), Fate.DISTORTED)
+        before = cells.area
+    go_on(state, cells)

@@ -1,0 +1,81 @@
+"""Keep a problem's states when elements are lost: every unknown that is left has its value."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Array
+from ngwear.equilibrium.carry import contact_pairs, sticking_pairs
+from ngwear.equilibrium.problem import Problem
+from ngwear.geometry.element_body import ElementBody, Index
+
+
+def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
+    """State vectors of ``old`` on the elements that ``new`` still has.
+
+    Surfaces that were inside begin without pressure.
+    """
+    was, now = old.body, new.body
+    inside = _unknowns(was, now)
+    scalar = old.part(DISPLACEMENT).stop - old.part(DISPLACEMENT).start
+    twins = {
+        after.name: _twins(was, before.positions, now, after.positions) for before, after in contact_pairs(old, new)
+    }
+    shown = old.state.vec.FV().NumPy()
+    before_all, kept = shown.copy(), []
+    for state in states:
+        shown[:] = state
+        out = new.state.vec.CreateVector()
+        out[:] = 0.0
+        target = out.FV().NumPy()
+        displacement = state[old.part(DISPLACEMENT)].reshape(2, scalar // 2)
+        target[new.part(DISPLACEMENT)] = displacement[:, inside].ravel()
+        vertices = inside[: now.mesh.nv]
+        target[new.part(VOLUMETRIC_STRESS)] = state[old.part(VOLUMETRIC_STRESS)][vertices]
+        for before, after in contact_pairs(old, new):
+            twin = twins[after.name]
+            ends = np.where((twin >= 0)[:, None], before.end_pressures()[twin], 0.0)
+            target[new.part(after.pressure_name)] = after.pressure_vector(ends)
+            if after.force_controlled:
+                target[new.part(after.travel_name)] = state[old.part(before.travel_name)]
+        new.state.vec.data = out
+        for before, after in sticking_pairs(old, new):
+            twin = twins[after.contact.name]
+            for name in after.tractions:
+                values = np.where(twin >= 0, before.contact.edge_values(old.fields[name])[twin], 0.0)
+                after.contact.set_edge_values(new.fields[name], values)
+        kept.append(new.state.vec.FV().NumPy().copy())
+    shown[:] = before_all
+    return kept
+
+
+def _unknowns(old: ElementBody, new: ElementBody) -> Index:
+    """Where each unknown of a scalar field of order 2 was: vertices, edges, then insides of quadrilaterals."""
+    vertices = np.searchsorted(old.vertices, new.vertices)
+    size = len(old.cells.points)
+
+    def keys(body: ElementBody) -> Index:
+        low, high = np.sort(body.vertices[body.edges], axis=1).T
+        return low * size + high
+
+    mine = keys(old)
+    order = np.argsort(mine)
+    edges = order[np.searchsorted(mine[order], keys(new))]
+
+    def quads(body: ElementBody) -> Index:
+        return np.flatnonzero(body.cells.living & body.cells.quads)
+
+    insides = np.searchsorted(quads(old), quads(new))
+    return np.concatenate([vertices, old.mesh.nv + edges, old.mesh.nv + len(old.edges) + insides])
+
+
+def _twins(old: ElementBody, old_positions: Index, new: ElementBody, positions: Index) -> Index:
+    """Which surface element of a contact each new one was, by position in the contact's order; -1 for a fresh one."""
+
+    def ends(body: ElementBody, where: Index) -> list[tuple[int, ...]]:
+        return [tuple(pair) for pair in body.vertices[body.outline.vertices[where]].tolist()]
+
+    known = {pair: k for k, pair in enumerate(ends(old, old_positions))}
+    return np.array([known.get(pair, -1) for pair in ends(new, positions)], dtype=np.intp)

@@ -1,0 +1,133 @@
+"""A body whose mesh is a list of elements that can be lost; its surface nodes move, those inside stay."""
+
+from __future__ import annotations
+
+import netgen.meshing as ngm
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.errors import MeshError
+from ngwear.geometry.body import Outline
+from ngwear.geometry.cells import HOLE, Cells
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.meshed import Meshed
+
+Index = NDArray[np.intp]
+FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded
+
+
+class ElementBody(Meshed):
+    """What of a section is left, meshed with its living elements alone: lost ones bring no unknown and no energy.
+
+    It has the interface of ``Body``. The displacement of the outline since the mesh was made is the mesh's deformation;
+    it ends at the first row of nodes inside.
+
+    Parameters
+    ----------
+    cells : Cells
+
+    Attributes
+    ----------
+    base, contour : Contour
+        The outline that was meshed, and the present one: closed polygons of element edges.
+    outline : Outline
+    vertices : array of int, shape (nv,)
+        Point of ``cells`` at each mesh vertex.
+    """
+
+    def __init__(self, cells: Cells) -> None:
+        self.cells = cells
+        self.base = self.contour = cells.contour
+        self._set_up()
+
+    def _set_up(self) -> None:
+        self.mesh, self.vertices = _mesh(self.cells)
+        self.outline = self._outline()
+        self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=1))
+
+    def __getstate__(self) -> dict[str, object]:
+        return {"cells": self.cells, "base": self.base, "contour": self.contour}
+
+    def __setstate__(self, saved: dict[str, object]) -> None:
+        self.__dict__.update(saved)
+        self._set_up()
+        self._deform()
+
+    @property
+    def size(self) -> float:
+        return float(np.ptp(self.contour.points, axis=0).max())
+
+    @property
+    def now(self) -> Cells:
+        """The elements where they are now."""
+        return self.cells.moved(self.contour.points)
+
+    def boundary(self, edges: tuple[str, ...]) -> ng.Region:
+        """As in ``Meshed``; of edges that the section once had, those that it has lost are left out."""
+        left = tuple(name for name in edges if name in self.region_names)
+        if not left:
+            raise MeshError(f"nothing of the edges {list(edges)} is left: all of their elements are lost")
+        return super().boundary(left)
+
+    def move_to(self, contour: Contour) -> None:
+        """Let the surface nodes go to an outline that has the points of ``base``, displaced.
+
+        Raises
+        ------
+        MeshError
+            If an element would turn inside out; the body is left as it was.
+        """
+        moved = self.cells.moved(contour.points)
+        least = (moved.least_jacobians() / moved.made)[moved.living]
+        if not least.min() > FLATTEST:
+            raise MeshError(f"moving the nodes with the outline would shrink an element to {least.min():.2g} of itself")
+        self.contour = contour
+        self.moves += 1
+        self._deform()
+
+    def _deform(self) -> None:
+        shift = self.contour.points - self.base.points
+        if not shift.any():
+            self.mesh.UnsetDeformation()
+            return
+        where = self.outline.vertices[:, 0]
+        for component in range(2):
+            self.deformation.components[component].vec.FV().NumPy()[where] = shift[:, component]
+        self.mesh.SetDeformation(self.deformation)
+
+    def _outline(self) -> Outline:
+        """The boundary elements in the order of the outline, whose points are the mesh's vertices."""
+        n = len(self.base)
+        vertex = {point: k for k, point in enumerate(self.vertices.tolist())}
+        ends = np.array([vertex[point] for point in self.cells.rim.tolist()])
+        vertices = np.stack([ends, np.roll(ends, -1)], axis=1)
+        element = {tuple(sorted(v.nr for v in e.vertices)): (e.nr, e.edges[0].nr) for e in self.mesh.Elements(ng.BND)}
+        found = np.array([element[tuple(sorted(pair))] for pair in vertices.tolist()])
+        t = np.stack([np.arange(n), np.arange(1, n + 1)], axis=1).astype(float)
+        return Outline(found[:, 0], vertices, found[:, 1], t, np.array(self.base.names))
+
+
+def _mesh(cells: Cells) -> tuple[ng.Mesh, Index]:
+    """Mesh of the living elements, quadrilaterals first, and the point at each of its vertices."""
+    living, quads = cells.living, cells.quads
+    kept = cells.corners[living]
+    used = np.unique(kept[kept >= 0])
+    number = np.full(len(cells.points), -1, dtype=np.int32)
+    number[used] = np.arange(len(used))
+    mesh = ngm.Mesh(2)
+    mesh.AddPoints(np.column_stack([cells.points[used], np.zeros(len(used))]))
+    mesh.Add(ngm.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1))
+    mesh.SetMaterial(1, "rubber")
+    for which, count in ((living & quads, 4), (living & ~quads, 3)):
+        if which.any():
+            mesh.AddElements(dim=2, index=1, data=number[cells.corners[which, :count]], base=0)
+    sides = np.stack([cells.rim, np.roll(cells.rim, -1)], axis=1)
+    names = np.array(cells.names)
+    holes = cells.holes()
+    pieces = [(name, sides[names == name]) for name in dict.fromkeys(cells.names)]
+    pieces += [(HOLE, holes)] if len(holes) else []
+    for k, (name, piece) in enumerate(pieces):
+        mesh.AddElements(dim=1, index=k + 1, data=number[piece], base=0)
+        mesh.SetBCName(k, name)
+    return ng.Mesh(mesh), used

@@ -1,0 +1,118 @@
+"""When rubber is torn: criteria on the stress of an element."""
+
+from __future__ import annotations
+
+import abc
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.errors import SceneError, require
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Stresses:
+    """Means over the deformed volume of each element.
+
+    Parameters
+    ----------
+    cauchy : array, shape (m, 3)
+        Cauchy stresses xx, yy, xy [MPa].
+    energy : array, shape (m,)
+        Strain energy per reference volume [mJ/mm³].
+    """
+
+    cauchy: Array
+    energy: Array
+
+    @property
+    def tensile(self) -> Array:
+        """The larger normal stress along x or y [MPa], shape (m,)."""
+        return self.cauchy[:, :2].max(axis=1)
+
+    @property
+    def principal(self) -> Array:
+        """The larger principal stress in the plane [MPa], shape (m,)."""
+        xx, yy, xy = self.cauchy.T
+        return 0.5 * (xx + yy) + np.hypot(0.5 * (xx - yy), xy)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Criterion(abc.ABC):
+    """A limit that an element bears; ``critical`` in the criterion's unit, > 0."""
+
+    critical: float
+
+    name = ""
+    accumulates = False
+
+    def __post_init__(self) -> None:
+        require(self.critical > 0, "deactivation.damage.critical", self.critical, "must be greater than 0")
+
+    @abc.abstractmethod
+    def exhaustion(self, stresses: Stresses) -> Array:
+        """How much of what it bears each element is under, shape (m,) [-]; torn from 1 on.
+
+        Of a criterion that ``accumulates``: what one cycle uses up.
+        """
+
+
+class TensileNormalStress(Criterion):
+    """Normal stress across x or y, whichever pulls more, over the critical one [MPa] (the source's, case C5)."""
+
+    name = "tensile normal stress"
+
+    def exhaustion(self, stresses: Stresses) -> Array:
+        return stresses.tensile / self.critical
+
+
+class MaximumPrincipalStress(Criterion):
+    """Largest principal Cauchy stress in the plane over the critical one [MPa] (Rankine)."""
+
+    name = "maximum principal stress"
+
+    def exhaustion(self, stresses: Stresses) -> Array:
+        return stresses.principal / self.critical
+
+
+class StrainEnergyDensity(Criterion):
+    """Strain energy per reference volume over the critical one [mJ/mm³]."""
+
+    name = "strain energy density"
+
+    def exhaustion(self, stresses: Stresses) -> Array:
+        return stresses.energy / self.critical
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fatigue(Criterion):
+    """Damage that adds up over cycles: ``(sigma_1 / critical)^exponent`` each, sigma_1 the cycle's highest.
+
+    Basquin's line with Miner's rule (J. Appl. Mech. 12 (1945) A159); ``critical`` is the principal stress that tears in
+    a single cycle [MPa].
+    """
+
+    exponent: float
+
+    name = "fatigue"
+    accumulates = True
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require(self.exponent > 0, "deactivation.damage.exponent", self.exponent, "must be greater than 0")
+
+    def exhaustion(self, stresses: Stresses) -> Array:
+        return (np.maximum(stresses.principal, 0.0) / self.critical) ** self.exponent
+
+
+CRITERIA = {kind.name: kind for kind in (TensileNormalStress, MaximumPrincipalStress, StrainEnergyDensity, Fatigue)}
+
+
+def criterion(name: str, **values: float) -> Criterion:
+    """A criterion by its name; SceneError for one that is not known."""
+    if name not in CRITERIA:
+        raise SceneError("deactivation.damage.criterion", name, f"must be one of {list(CRITERIA)}")
+    return CRITERIA[name](**values)
