@@ -13,12 +13,12 @@ import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.fields.cells import Cells
 from ngwear.fields.kinematics import Kinematics
 from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-CELLS = {2: ng.TRIG, 3: ng.TET}
 EXACT = {2: 2.0, 3: 1.0}  # order of the rule over that of the displacement: 4 points suffice in a tetrahedron
 
 
@@ -44,12 +44,11 @@ class MaterialPoints:
     ) -> None:
         self.body, self.kinematics = body, kinematics
         dim = self._dim = body.mesh.dim
-        self._rule = rule = ng.IntegrationRule(CELLS[dim], int(EXACT[dim] * order))
+        self._cells = Cells(body.mesh, int(EXACT[dim] * order))
         self.strains = dim * dim + (dim == 2) + 1
-        self._points = body.mesh.MapToAllElements(rule, ng.VOL)
-        self._rule_weights = np.array(rule.weights)
-        moving, self._shapes, self._slopes = _shapes(body.mesh, order, rule)
-        stressed, self._stress_shapes, _ = _shapes(body.mesh, order - 1, rule)
+        self._points = self._cells.points
+        moving, self._shapes, self._slopes = self._cells.shapes(order)
+        stressed, self._stress_shapes, _ = self._cells.shapes(order - 1)
         component = (displacement.stop - displacement.start) // dim
         moved = [displacement.start + i * component + moving for i in range(dim)]
         self.unknowns = np.concatenate([*moved, pressure.start + stressed], axis=1)
@@ -67,7 +66,7 @@ class MaterialPoints:
         jacobian = np.asarray(ng.specialcf.JacobianMatrix(dim)(self._points)).reshape(*shape, dim, dim)
         slopes = self._slopes @ np.linalg.inv(jacobian)
         weight = np.broadcast_to(np.asarray(self.kinematics.weight(self._points)).reshape(-1), (elements * points,))
-        self._sizes = self._rule_weights * np.abs(np.linalg.det(jacobian))
+        self._sizes = self._cells.weights * np.abs(np.linalg.det(jacobian))
         self.volumes = self._sizes * weight.reshape(shape)
         n = self._slopes.shape[2]
         B = np.zeros((*shape, self.strains, self.unknowns.shape[1]))
@@ -101,50 +100,30 @@ class MaterialPoints:
     @property
     def centres(self) -> Array:
         """Centres of the elements [mm], shape (elements, dim)."""
-        return self.places.mean(axis=1)
+        return self.places.mean(axis=1, where=self._cells.real[..., None])
 
     @property
     def edges(self) -> Array:
-        """Edge of the equilateral triangle of each element's area [mm], shape (elements,)."""
-        return np.sqrt(4 / np.sqrt(3) * self._sizes.sum(axis=1))
+        """Edge of the equilateral triangle, or of the square, of each element's area [mm], shape (elements,)."""
+        return np.sqrt(np.where(self._cells.quads, 1.0, 4 / np.sqrt(3)) * self._sizes.sum(axis=1))
 
     def recovered(self, values: Array) -> Array:
         """Values at the points, shape (elements, points, k), smoothed: averaged to the vertices and interpolated."""
         vertices, shapes, fit = self._corners
         plane = fit @ values
-        area = self._sizes.sum(axis=1)
+        area = self._sizes.sum(axis=1)[:, None] * shapes.any(axis=1)  # of the element, at each of its vertices
         total = np.zeros((self.body.mesh.nv, values.shape[-1]))
-        weight = np.bincount(vertices.ravel(), np.repeat(area, 3), minlength=len(total))
+        weight = np.bincount(vertices.ravel(), area.ravel(), minlength=len(total))
         for k in range(values.shape[-1]):
-            total[:, k] = np.bincount(vertices.ravel(), (plane[..., k] * area[:, None]).ravel(), minlength=len(total))
+            total[:, k] = np.bincount(vertices.ravel(), (plane[..., k] * area).ravel(), minlength=len(total))
         return shapes @ (total / weight[:, None])[vertices]
 
     @cached_property
     def _corners(self) -> tuple[Index, Array, Array]:
-        """Vertices of the elements, the shape functions of a plane, and the least-squares plane through the points."""
-        vertices, shapes, _ = _shapes(self.body.mesh, 1, self._rule)
-        return vertices, shapes, np.linalg.pinv(shapes)
+        """Vertices of the elements, shape functions of order 1, and their least-squares fit to the points."""
+        vertices, shapes, _ = self._cells.shapes(1)
+        return vertices, shapes, np.linalg.pinv(shapes * self._cells.real[..., None])
 
     def stiffness(self, tangent: Array) -> Array:
         """Element matrices, shape (elements, n, n), of d stress / d strain, (elements, points, strains, strains)."""
         return self._transposed @ (tangent @ self._B).reshape(self._flat.shape)
-
-
-def _shapes(mesh: ng.Mesh, order: int, rule: ng.IntegrationRule) -> tuple[Index, Array, Array]:
-    """Unknowns of each element in a scalar space, and its shape functions and their slopes at the rule's points.
-
-    Shapes (elements, n), (elements, points, n) and (elements, points, n, dim), on the reference element. They
-    depend on the order of an element's vertex numbers only.
-    """
-    space = ng.H1(mesh, order=order)
-    elements = [ng.ElementId(ng.VOL, i) for i in range(mesh.ne)]
-    unknowns = np.array([space.GetDofNrs(element) for element in elements], dtype=np.int64)
-    vertices = np.array([[v.nr for v in mesh[element].vertices] for element in elements])
-    ranks = [tuple(rank) for rank in np.argsort(vertices, axis=1).tolist()]
-    kinds = {rank: i for i, rank in reversed(list(enumerate(ranks)))}
-    values, slopes = {}, {}
-    for rank, i in kinds.items():
-        element = space.GetFE(elements[i])
-        values[rank] = np.array([element.CalcShape(*p) for p in np.array(rule.points)[:, : mesh.dim]])
-        slopes[rank] = np.array([np.array(element.CalcDShape(*p)) for p in np.array(rule.points)[:, : mesh.dim]])
-    return unknowns, np.array([values[r] for r in ranks]), np.array([slopes[r] for r in ranks])

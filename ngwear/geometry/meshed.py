@@ -40,6 +40,11 @@ class Meshed(abc.ABC):
         return nodal.edge_vertices(self.mesh)
 
     @cached_property
+    def quads(self) -> NDArray[np.intp]:
+        """Nodes of each quadrilateral, shape (k, 8): see ``nodal.quad_nodes``."""
+        return nodal.quad_nodes(self.mesh)
+
+    @cached_property
     def region_names(self) -> tuple[str, ...]:
         """Names of the pieces of the surface that the mesh knows."""
         return tuple(self.mesh.GetBoundaries())
