@@ -20,6 +20,8 @@ from ngwear.sliding.scene import KIND as PIN
 from ngwear.sliding.scene import PinScene
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
+TABLES = {"scene", "contour", "material", "contact", "fluid", "support", "program", "accuracy", "wear", "save"}
+TABLES |= {"deactivation"}
 KINDS = {"axisymmetric": True, "plane strain": False}
 
 
@@ -66,20 +68,7 @@ def read_scene(path: Path | str) -> Scene | PinScene:
 
 
 def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
-    allowed = {
-        "scene",
-        "contour",
-        "material",
-        "contact",
-        "fluid",
-        "support",
-        "program",
-        "accuracy",
-        "wear",
-        "save",
-        "deactivation",
-    }
-    known("", data, allowed)
+    known("", data, TABLES)
     outline = subtable(data, "contour")
     known("contour.", outline, {"file"})
     return Scene(

@@ -74,13 +74,21 @@ class Wearing:
             wearing.own, wearing.last = 1.0 - share, share[:, None] * area
             wearing._foresee(area, later or {})
         implicit = scene.wear.scheme == "implicit"
-        depth = wearing.last / state.contour.widths(scene.worn_edges) - wearing.ahead
+        depth = wearing.last / wearing.halfway.widths(scene.worn_edges) - wearing.ahead
         for spec, own, known in zip(scene.contacts, wearing.own, depth, strict=True):
             contact = state.stage.contacts[spec.name]
             contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
             if spec.wears:
                 contact.set_worn(known)
         return wearing
+
+    @property
+    def halfway(self) -> Contour:
+        """Between the outline and the foreseen one, where a depth sweeps the area of its length times itself.
+
+        By the lengths of the outline before, convex places would wear too deep; by those after, ripples would grow.
+        """
+        return self.outline.moved(0.5 * (self.state.contour.points - self.outline.points))
 
     @property
     def ways(self) -> Array:
@@ -129,7 +137,8 @@ class Wearing:
         """
         state, outline, phase = self.state, self.outline, self.state.phases[self.index]
         stage, scene = state.stage, state.stage.scene
-        width = state.contour.widths(scene.worn_edges)
+        halfway = self.halfway
+        width = halfway.widths(scene.worn_edges)
         shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
         state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off = np.zeros(len(outline)), np.zeros(len(outline))
@@ -143,7 +152,7 @@ class Wearing:
             rate /= contact.at_nodes(stage.elasticity.volume_ratio())
             last = contact.from_points(self.last[k] / width) * profile.weight
             last *= self.last[k].sum() / last.sum() if last.any() else 1.0
-            area = worn_share(state.contour, profile, self.own[k] * ways[k] * rate * profile.weight + last)
+            area = worn_share(halfway, profile, self.own[k] * ways[k] * rate * profile.weight + last)
             share += area
             pressure[k], mean[k] = width * at_points(outline, profile, rate), area / ways[k]
             if phase.pressure is not None:

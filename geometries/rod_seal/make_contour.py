@@ -110,15 +110,10 @@ def edges() -> list[tuple[str, np.ndarray]]:
     ]
 
 
-def main() -> None:
-    """Write the outline beside this script."""
-    corner = {"heel", "back face", "sealed shoulder", "sealed round", "static face", "air round"}
-    lines = [
-        'title = "Invented rod seal, section 5 x 4 mm, bore 20.4 mm"',
-        'provenance = "invented after the description in 10.5772/50498; not measured; made by make_contour.py"',
-        'coordinates = ["axial [mm]", "radius [mm]"]',
-    ]
-    for name, points in edges():
+def write(path: Path, named: list[tuple[str, np.ndarray]], corner: set[str], head: list[str]) -> None:
+    """Write named edges, each up to the first point of the next; those in ``corner`` begin with one."""
+    lines = list(head)
+    for name, points in named:
         lines += [
             "",
             "[[edge]]",
@@ -128,7 +123,20 @@ def main() -> None:
         ]
         lines += [f"  [{z:.6f}, {r:.6f}]," for z, r in points[:-1]]
         lines += ["]"]
-    Path(__file__).with_name("contour.toml").write_text("\n".join(lines) + "\n")
+    path.write_text("\n".join(lines) + "\n")
+
+
+CORNER = {"heel", "back face", "sealed shoulder", "sealed round", "static face", "air round"}
+
+
+def main() -> None:
+    """Write the outline beside this script."""
+    head = [
+        'title = "Invented rod seal, section 5 x 4 mm, bore 20.4 mm"',
+        'provenance = "invented after the description in 10.5772/50498; not measured; made by make_contour.py"',
+        'coordinates = ["axial [mm]", "radius [mm]"]',
+    ]
+    write(Path(__file__).with_name("contour.toml"), edges(), CORNER, head)
 
 
 if __name__ == "__main__":

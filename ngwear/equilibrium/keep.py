@@ -20,9 +20,8 @@ def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     was, now = old.body, new.body
     inside = _unknowns(was, now)
     scalar = old.part(DISPLACEMENT).stop - old.part(DISPLACEMENT).start
-    twins = {
-        after.name: _twins(was, before.positions, now, after.positions) for before, after in contact_pairs(old, new)
-    }
+    pairs = contact_pairs(old, new)
+    twins = {after.name: _twins(was, before.positions, now, after.positions) for before, after in pairs}
     shown = old.state.vec.FV().NumPy()
     before_all, kept = shown.copy(), []
     for state in states:
@@ -34,7 +33,7 @@ def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         target[new.part(DISPLACEMENT)] = displacement[:, inside].ravel()
         vertices = inside[: now.mesh.nv]
         target[new.part(VOLUMETRIC_STRESS)] = state[old.part(VOLUMETRIC_STRESS)][vertices]
-        for before, after in contact_pairs(old, new):
+        for before, after in pairs:
             twin = twins[after.name]
             ends = np.where((twin >= 0)[:, None], before.end_pressures()[twin], 0.0)
             target[new.part(after.pressure_name)] = after.pressure_vector(ends)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import ngsolve as ng
 import numpy as np
@@ -86,7 +87,7 @@ def _face(contour: Contour, edges: tuple[str, ...], edge: float) -> tuple[Array,
     way = np.concatenate([[0.0], np.cumsum(contour.lengths[run[:-1]])])
     nodes, names = [contour.points[run[0]]], []
     marks = np.flatnonzero(fixed)
-    for a, b in zip(marks[:-1], marks[1:], strict=True):
+    for a, b in pairwise(marks):
         parts = max(1, math.ceil((way[b] - way[a]) / edge - 0.25))
         at = way[a] + (way[b] - way[a]) * np.arange(1, parts + 1) / parts
         where = np.interp(at, way, np.arange(count + 1))

@@ -46,6 +46,8 @@ def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contou
         If the section is worn through.
     """
     points = receded(contour, area, worn_edges)
+    if points is contour.points:
+        return contour
     try:
         return replace(contour, points=points)
     except GeometryError:

@@ -29,9 +29,8 @@ def read_deactivation(table: Any) -> Deactivation:
 def _damage(table: Any) -> Criterion:
     place = f"{PLACE}.damage"
     if not isinstance(table, dict):
-        raise SceneError(
-            place, table, 'must be a table, such as { criterion = "tensile normal stress", critical = 19.0 }'
-        )
+        example = '{ criterion = "tensile normal stress", critical = 19.0 }'
+        raise SceneError(place, table, f"must be a table, such as {example}")
     values = dict(table)
     name = values.pop("criterion", None)
     kind = CRITERIA.get(name) if isinstance(name, str) else None
