@@ -64,8 +64,16 @@ def close(found, expected, tolerance=1e-12):
 @by_mesh
 @by_kinematics
 @pytest.mark.parametrize("order", [2, 3])
-def test_points_give_what_ngsolve_gives(halved, kinematics, order):
-    at = problem(blocks.Block(5, 4, image=blocks.wavy, halved=halved), kinematics, order=order)
+@pytest.mark.parametrize("moved", [False, True], ids=["as meshed", "outline moved"])
+def test_points_give_what_ngsolve_gives(halved, kinematics, order, moved):
+    body = blocks.Block(5, 4, image=blocks.wavy, halved=halved)
+    at = problem(body, kinematics, order=order)
+    if moved:
+        body.deformation = ng.GridFunction(ng.VectorH1(body.mesh, order=2))
+        body.deformation.Set(ng.CF((0.02 * ng.sin(3 * ng.y), 0.01 * ng.cos(2 * ng.x))))
+        body.mesh.SetDeformation(body.deformation)
+        body.moves += 1
+        at.points.follow()
     set_waves(at)
     form, state = symbolic(at, at.terms[0]), at.state.vec
     assert energy(at) == pytest.approx(form.Energy(state), rel=1e-12)
