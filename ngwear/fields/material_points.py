@@ -29,6 +29,9 @@ class MaterialPoints:
     gradient and p the volumetric stress [MPa]; of a solid, ``(F_xx - 1, F_xy, ..., F_zz - 1, p)``. It is linear in the
     unknowns; the matrix B of that map and the reference volumes follow the body's outline as it moves.
 
+    Where a section has triangles and quadrilaterals, triangles are filled up to as many points: copies of a point of
+    theirs with no volume (see ``fields.cells``).
+
     Parameters
     ----------
     body : Meshed

@@ -44,6 +44,15 @@ class Meshed(abc.ABC):
         """Nodes of each quadrilateral, shape (k, 8): see ``nodal.quad_nodes``."""
         return nodal.quad_nodes(self.mesh)
 
+    def node_places(self) -> NDArray[np.float64]:
+        """Coordinates of the nodes of a mesh with straight edges [mm]: see ``nodal.places``."""
+        return nodal.places(self.mesh, self.edges, self.quads)
+
+    def set_nodal(self, field: ng.GridFunction, values: NDArray[np.float64]) -> None:
+        """Give a ``VectorH1`` field of order 2 its values at the nodes, shape (n, dim)."""
+        for component, part in zip(field.components, values.T, strict=True):
+            component.vec.FV().NumPy()[:] = nodal.join(part, self.edges, self.quads)
+
     @cached_property
     def region_names(self) -> tuple[str, ...]:
         """Names of the pieces of the surface that the mesh knows."""

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ngsolve as ng
 import numpy as np
+from ngsolve.meshes import MakeStructured2DMesh
 
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.sizing import SizeField
 
 
@@ -25,6 +27,21 @@ def meshed(contour: Contour, coarse: float, seeds: Array | None = None, size: Ar
     """Mesh a contour with elements of ``coarse`` [mm]; at the seeds, shape (k, 2), of ``size`` (one, or one each)."""
     places = np.empty((0, 2)) if seeds is None else np.asarray(seeds, dtype=float)
     return Body(contour, SizeField(places, np.broadcast_to(size, len(places)).astype(float), coarse))
+
+
+class QuadBlock(Meshed):
+    """Square [x, x + 1] x [y, y + 1] mm of n x n distorted quadrilaterals; edges bottom, right, top and left."""
+
+    def __init__(self, x: float, y: float, n: int) -> None:
+        def place(a: float, b: float) -> tuple[float, float]:
+            off = 0.08 * np.sin(np.pi * a) * np.sin(np.pi * b)
+            return x + a + off * np.cos(5 * b), y + b + off * np.sin(4 * a + 1)
+
+        self.mesh = MakeStructured2DMesh(quads=True, nx=n, ny=n, mapping=place)
+
+    @property
+    def size(self) -> float:
+        return 1.0
 
 
 def mean(field: ng.CoefficientFunction, body: Body, edge: str) -> float:

@@ -5,11 +5,14 @@ it by 0.01 %, elements of 0.2 mm, K/G from 1e2 to 1e5. Reference: Lamé (Timoshe
 *Theory of Elasticity*, section 28), ``u = (p a^2 / (b^2 - a^2)) (R / (2 (K + G/3)) + b^2 / (2 G R))``,
 exact for every K/G. Displacements of order 1 without an unknown pressure would be too stiff by a factor
 that grows with K/G; here the relative L2 error of the displacement stays where it is.
+
+Quadrilaterals: a square cut out of the ring and moved along its whole outline as there.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import ngsolve as ng
 
@@ -18,34 +21,56 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.equilibrium.problem import Problem, Support
-from ngwear.equilibrium.stepping import StepOptions, advance
+from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.fields.kinematics import PlaneStrain
+from ngwear.geometry.meshed import Meshed
 from ngwear.materials import NeoHooke
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.verify.builders import meshed, quarter_ring
+from ngwear.verify.builders import QuadBlock, meshed, quarter_ring
 
 INNER, OUTER, SHEAR, STRAIN = 1.0, 2.0, 1.0, 1e-4
 SIZE = 0.2
 RATIOS = (1e2, 1e3, 1e4, 1e5)
 TOLERANCE, GROWTH = 1e-3, 1.1
+CUT, ALONG = (0.8, 0.6), 5  # lower left corner of the square, 1 mm from the axis, and elements along its side
+TIGHT = StepOptions(newton=NewtonOptions(tolerance=1e-11))
 
 
 def displacement_error(ratio: float) -> float:
     """Relative L2 error of the displacement for K/G = ``ratio``."""
-    a, b, bulk = INNER, OUTER, ratio * SHEAR
-    uniform, shearing = 1 / (2 * (bulk + SHEAR / 3)), b**2 / (2 * SHEAR)
-    factor = STRAIN * a / (uniform * a + shearing / a)
-    pressure = factor * (b**2 - a**2) / a**2
+    a, b = INNER, OUTER
+    factor, _ = _lame(ratio)
     fluid = FluidPressure(("bore",), ("bore",), ())
-    problem = Problem(
-        meshed(quarter_ring(a, b), SIZE),
-        PlaneStrain(),
-        [Elasticity(NeoHooke(shear=SHEAR, bulk_modulus=bulk)), fluid],
-        supports=[Support(("along x",), x=False), Support(("along y",), y=False)],
-    )
-    advance(problem, {"fluid pressure [MPa]": pressure}, StepOptions(newton=NewtonOptions(tolerance=1e-11)))
+    supports = [Support(("along x",), x=False), Support(("along y",), y=False)]
+    problem = Problem(meshed(quarter_ring(a, b), SIZE), PlaneStrain(), [_elasticity(ratio), fluid], supports=supports)
+    advance(problem, {"fluid pressure [MPa]": factor * (b**2 - a**2) / a**2}, TIGHT)
+    return _relative(problem, ratio)
+
+
+def cut_error(ratio: float, body: Meshed) -> float:
+    """The same for a part of the ring whose outline, all of it, is moved as there."""
+    problem = Problem(body, PlaneStrain(), [_elasticity(ratio)], supports=[Support(body.region_names)])
+    _, exact = _lame(ratio)
+    problem.fields[DISPLACEMENT].Set(exact, definedon=body.boundary(body.region_names))
+    relax(problem, TIGHT)
+    return _relative(problem, ratio)
+
+
+def _elasticity(ratio: float) -> Elasticity:
+    return Elasticity(NeoHooke(shear=SHEAR, bulk_modulus=ratio * SHEAR))
+
+
+def _lame(ratio: float) -> tuple[float, ng.CoefficientFunction]:
+    """``p a^2 / (b^2 - a^2)`` [MPa] and the displacement."""
+    a, b = INNER, OUTER
+    uniform, shearing = 1 / (2 * (ratio * SHEAR + SHEAR / 3)), b**2 / (2 * SHEAR)
+    factor = STRAIN * a / (uniform * a + shearing / a)
     radius2 = ng.x**2 + ng.y**2
-    exact = factor * (uniform + shearing / radius2) * ng.CF((ng.x, ng.y))
+    return factor, factor * (uniform + shearing / radius2) * ng.CF((ng.x, ng.y))
+
+
+def _relative(problem: Problem, ratio: float) -> float:
+    _, exact = _lame(ratio)
     off = problem.fields[DISPLACEMENT] - exact
     measure, mesh = ng.dx(bonus_intorder=4), problem.body.mesh
     return math.sqrt(ng.Integrate(off * off * measure, mesh) / ng.Integrate(exact * exact * measure, mesh))
@@ -53,13 +78,18 @@ def displacement_error(ratio: float) -> float:
 
 def run() -> list[Check]:
     """The error for each K/G, and how much it grows from the softest to the stiffest."""
+    square = QuadBlock(*CUT, ALONG)
+    return [*_checks("", displacement_error), *_checks(", quadrilaterals", lambda ratio: cut_error(ratio, square))]
+
+
+def _checks(kind: str, error_at: Callable[[float], float]) -> list[Check]:
     checks, errors = [], []
     total = Stopwatch()
     for ratio in RATIOS:
         clock = Stopwatch()
-        errors.append(displacement_error(ratio))
-        name = f"relative L2 error of the displacement at K/G = {ratio:.0e} [-]"
+        errors.append(error_at(ratio))
+        name = f"relative L2 error of the displacement at K/G = {ratio:.0e}{kind} [-]"
         checks.append(Check("locking", name, errors[-1], 0.0, TOLERANCE, clock.seconds))
-    name = f"error at K/G = {RATIOS[-1]:.0e} over that at {RATIOS[0]:.0e} [-]"
+    name = f"error at K/G = {RATIOS[-1]:.0e} over that at {RATIOS[0]:.0e}{kind} [-]"
     checks.append(Check("locking", name, errors[-1] / errors[0], GROWTH, 0.0, total.seconds, bound="below"))
     return checks

@@ -19,6 +19,7 @@ from ngwear.geometry import nodal
 from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder
+from ngwear.verify import convergence, locking
 from ngwear.verify.builders import meshed
 from ngwear.verify.tangents import tangent_error
 
@@ -42,9 +43,7 @@ def set_waves(problem: Problem) -> None:
 def set_displacement(problem: Problem, function) -> None:
     """Give the displacement its values at the nodes."""
     body = problem.body
-    at = function(nodal.places(body.mesh, body.edges, body.quads))
-    for field, values in zip(problem.fields[DISPLACEMENT].components, at.T, strict=True):
-        field.vec.FV().NumPy()[:] = nodal.join(values, body.edges, body.quads)
+    body.set_nodal(problem.fields[DISPLACEMENT], function(body.node_places()))
 
 
 def residual(problem: Problem) -> np.ndarray:
@@ -65,8 +64,16 @@ def close(found, expected, tolerance=1e-12):
 @by_mesh
 @by_kinematics
 @pytest.mark.parametrize("order", [2, 3])
-def test_points_give_what_ngsolve_gives(halved, kinematics, order):
-    at = problem(blocks.Block(5, 4, image=blocks.wavy, halved=halved), kinematics, order=order)
+@pytest.mark.parametrize("moved", [False, True], ids=["as meshed", "outline moved"])
+def test_points_give_what_ngsolve_gives(halved, kinematics, order, moved):
+    body = blocks.Block(5, 4, image=blocks.wavy, halved=halved)
+    at = problem(body, kinematics, order=order)
+    if moved:
+        body.deformation = ng.GridFunction(ng.VectorH1(body.mesh, order=2))
+        body.deformation.Set(ng.CF((0.02 * ng.sin(3 * ng.y), 0.01 * ng.cos(2 * ng.x))))
+        body.mesh.SetDeformation(body.deformation)
+        body.moves += 1
+        at.points.follow()
     set_waves(at)
     form, state = symbolic(at, at.terms[0]), at.state.vec
     assert energy(at) == pytest.approx(form.Energy(state), rel=1e-12)
@@ -136,7 +143,7 @@ def test_nodal_values_come_back_and_set_a_displacement_exactly(halved):
     )
     field = ng.GridFunction(space)
     field.vec.FV().NumPy()[:] = values
-    found = [field(body.mesh(*p)) for p in nodal.places(body.mesh, body.edges, body.quads)]
+    found = [field(body.mesh(*p)) for p in body.node_places()]
     np.testing.assert_allclose(nodal.split(values, body.edges, body.quads), found, atol=1e-12)
     at = problem(body)
     set_displacement(at, lambda x: np.column_stack([x[:, 0] ** 2 - x[:, 0] * x[:, 1], 1 + x[:, 1] ** 2]))
@@ -171,6 +178,30 @@ def test_an_affine_displacement_of_the_outline_makes_a_homogeneous_stress(halved
     p = at.terms[0].split[1] * (np.linalg.det(np.eye(2) + slope) - 1)
     one, _ = at.terms[0].response(np.array([*slope.ravel(), 0.0, p]), tangent=False)
     np.testing.assert_allclose(stress[..., :5], np.broadcast_to(one[:5], stress[..., :5].shape), atol=1e-7)
+
+
+def cut(n: int, halved) -> blocks.Block:
+    """Square of 1 mm, distorted inside, 1 mm from the axis of the rings of the reference cases."""
+
+    def image(x):
+        off = 0.08 * np.sin(np.pi * x).prod(axis=1)
+        return np.column_stack([0.8, 0.6]) + x + off[:, None] * np.cos(5 * x[:, ::-1])
+
+    return blocks.Block(n, n, image=image, halved=halved)
+
+
+@by_mesh
+def test_displacements_converge_with_the_third_power_of_the_edge(halved):
+    errors = [convergence.cut_error(cut(n, halved)) for n in (4, 8, 16)]
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    assert (orders > convergence.LEAST_ORDER).all(), f"observed orders {orders}"
+
+
+@by_mesh
+def test_nothing_locks(halved):
+    soft, stiff = (locking.cut_error(ratio, cut(5, halved)) for ratio in (1e2, 1e5))
+    assert stiff < locking.GROWTH * soft
+    assert stiff < locking.TOLERANCE
 
 
 @by_mesh
