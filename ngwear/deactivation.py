@@ -22,6 +22,8 @@ from ngwear.wear.damage import Stresses
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+THINNEST = 0.2  # of an element's side: how near a surface node comes to the one beneath before both become one
+
 
 def element_body(scene: Scene) -> ElementBody:
     """The section of a scene that deactivates elements, meshed in layers below the edges that wear."""
@@ -60,7 +62,7 @@ def exhaustion(state: State, repeats: int) -> Array:
     stage, cells = state.stage, state.stage.body.cells
     criterion = stage.scene.deactivation.damage
     out = np.zeros(len(cells.fate))
-    out[cells.living] = criterion.exhaustion(stresses(stage))
+    out[stage.body.numbers] = criterion.exhaustion(stresses(stage))
     if criterion.accumulates:
         out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
     return np.where(cells.living & cells.quads, out, 0.0)
@@ -157,19 +159,26 @@ def follow(state: State, outline: Contour, points: Array) -> None:
     GeometryError
         If nothing is left, or the section is cut in two.
     """
-    body, deactivation = state.stage.body, state.stage.scene.deactivation
-    cells, sieve = body.cells.moved(points), deactivation.distortion
-    if sieve is None or not sieve.finds(cells).any():
+    body, sieve = state.stage.body, state.stage.scene.deactivation.distortion
+    cells = body.cells.moved(points)
+    worn = cells.area
+    while len(reached := _reached(cells)):
+        cells = cells.merged(reached)
+    state.ledger.lost[Fate.DISTORTED] += worn - cells.area  # of walls whose ends were merged
+    if sieve is not None and (distorted := sieve.finds(cells)).any():
+        cells = booked(state, cells, distorted, Fate.DISTORTED)
+    if np.array_equal(cells.corners, body.cells.corners) and np.array_equal(cells.fate, body.cells.fate):
         body.move_to(replace(outline, points=points))
-        return
-    way = points - outline.points
-    gone = {int(p): d for p, d in zip(cells.rim, way, strict=True) if d.any()}
-    before = cells.area
-    while (distorted := sieve.finds(cells)).any():
-        cells, went = sieve.pass_on(cells, distorted, gone)
-        gone |= went
-        shifted = cells.area
-        state.ledger.lost[Fate.DISTORTED] += before - shifted  # nodes beneath went with the surface
-        cells = booked(state, cells, distorted | sieve.finds(cells), Fate.DISTORTED)
-        before = cells.area
-    go_on(state, cells)
+    else:
+        go_on(state, cells)
+
+
+def _reached(cells: Cells) -> NDArray[np.intp]:
+    """Points of the outline that are about to pass the next ones on their columns."""
+    rim = cells.rim
+    place, beneath = cells.points[rim], cells.below[rim]
+    chord = np.roll(place, -1, axis=0) - np.roll(place, 1, axis=0)
+    normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
+    left = ((cells.points[beneath] - place) * normal).sum(axis=1)
+    near = THINNEST * np.sqrt(np.median(cells.made[cells.quads]))
+    return rim[(beneath >= 0) & (left < near)]

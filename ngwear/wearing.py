@@ -166,7 +166,7 @@ class Wearing:
             state.ledger.depth_error = float(state.depth_error.max())
         phase.pressure, phase.mean, phase.ways = pressure, mean, ways
         if scene.deactivation is not None:
-            points = receded(outline, share, scene.worn_edges)
+            points = receded(outline, share, scene.worn_edges, stage.body.now.inward())
             state.ledger.worn += float(share.sum())
             state.ledger.removed += outline.area - polygon_area(points)
             deactivation.follow(state, outline, points)

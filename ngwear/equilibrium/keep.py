@@ -11,11 +11,13 @@ from ngwear.equilibrium.carry import contact_pairs, sticking_pairs
 from ngwear.equilibrium.problem import Problem
 from ngwear.geometry.element_body import ElementBody, Index
 
+NONE = -1
+
 
 def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     """State vectors of ``old`` on the elements that ``new`` still has.
 
-    Surfaces that were inside begin without pressure.
+    A point that another has been merged with keeps its own values; surfaces that were inside begin without pressure.
     """
     was, now = old.body, new.body
     inside = _unknowns(was, now)
@@ -29,7 +31,8 @@ def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         out = new.state.vec.CreateVector()
         out[:] = 0.0
         target = out.FV().NumPy()
-        displacement = state[old.part(DISPLACEMENT)].reshape(2, scalar // 2)
+        # An edge that is new, beside merged points, begins straight: its own unknown is 0, as the one put last here.
+        displacement = np.pad(state[old.part(DISPLACEMENT)].reshape(2, scalar // 2), ((0, 0), (0, 1)))
         target[new.part(DISPLACEMENT)] = displacement[:, inside].ravel()
         vertices = inside[: now.mesh.nv]
         target[new.part(VOLUMETRIC_STRESS)] = state[old.part(VOLUMETRIC_STRESS)][vertices]
@@ -61,13 +64,14 @@ def _unknowns(old: ElementBody, new: ElementBody) -> Index:
 
     mine = keys(old)
     order = np.argsort(mine)
-    edges = order[np.searchsorted(mine[order], keys(new))]
+    nearest = np.minimum(np.searchsorted(mine[order], keys(new)), len(order) - 1)
+    edges = np.where(mine[order][nearest] == keys(new), old.mesh.nv + order[nearest], NONE)
 
     def quads(body: ElementBody) -> Index:
         return np.flatnonzero(body.cells.living & body.cells.quads)
 
     insides = np.searchsorted(quads(old), quads(new))
-    return np.concatenate([vertices, old.mesh.nv + edges, old.mesh.nv + len(old.edges) + insides])
+    return np.concatenate([vertices, edges, old.mesh.nv + len(old.edges) + insides])
 
 
 def _twins(old: ElementBody, old_positions: Index, new: ElementBody, positions: Index) -> Index:

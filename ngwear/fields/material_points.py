@@ -13,7 +13,7 @@ import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.fields.cells import Cells
+from ngwear.fields.element_shapes import Cells
 from ngwear.fields.kinematics import Kinematics
 from ngwear.geometry.meshed import Meshed
 
@@ -30,7 +30,7 @@ class MaterialPoints:
     unknowns; the matrix B of that map and the reference volumes follow the body's outline as it moves.
 
     Where a section has triangles and quadrilaterals, triangles are filled up to as many points: copies of a point of
-    theirs with no volume (see ``fields.cells``).
+    theirs with no volume (see ``fields.element_shapes``).
 
     Parameters
     ----------

@@ -25,6 +25,7 @@ class Fate(enum.IntEnum):
     TORN = 1
     DISTORTED = 2
     LOOSE = 3
+    WORN = 4  # away, its points merged with those beneath
 
 
 @dataclass(frozen=True)
@@ -36,13 +37,15 @@ class Cells:
     points : array, shape (n, 2)
         Unloaded coordinates [mm].
     corners : array of int, shape (m, 4)
-        Points of each element, counter-clockwise; -1 comes last in a triangle. Quadrilaterals come first.
+        Points of each element, counter-clockwise; -1 comes last in a triangle.
     fate : array of int, shape (m,)
         See ``Fate``.
     rim : array of int, shape (k,)
         Points of the outline, counter-clockwise; segment i runs from rim[i] to the next.
     names : tuple of str, length k
         Name of each segment's edge.
+    below : array of int, shape (n,)
+        Next point inwards on each point's column; -1 for none.
     made : array, shape (m,)
         Least corner Jacobian of each element as it was made, see ``least_jacobian`` [mm²].
     provenance : str
@@ -54,6 +57,7 @@ class Cells:
     fate: NDArray[np.int8]
     rim: Index
     names: tuple[str, ...]
+    below: Index
     made: Array
     provenance: str = ""
 
@@ -113,6 +117,34 @@ class Cells:
         everywhere = self.points.copy()
         everywhere[self.rim] = points
         return replace(self, points=everywhere)
+
+    def inward(self) -> Array:
+        """Unit vector from each point of the outline to the next one on its column, shape (k, 2); zero for none."""
+        beneath = self.below[self.rim]
+        way = np.where((beneath >= 0)[:, None], self.points[beneath] - self.points[self.rim], 0.0)
+        length = np.linalg.norm(way, axis=1)[:, None]
+        return np.divide(way, length, out=np.zeros_like(way), where=length > 0)
+
+    def merged(self, surface: Index) -> Cells:
+        """The same with points of the outline and the next ones on their columns made one, where the former are.
+
+        Quadrilaterals beside become triangles, triangles vanish.
+        """
+        beneath = self.below[surface]
+        into = np.arange(len(self.points))
+        into[beneath] = surface
+        below = self.below.copy()
+        below[surface] = self.below[beneath]
+        corners, fate = self.corners.copy(), self.fate.copy()
+        for k in np.flatnonzero(np.isin(corners, beneath).any(axis=1)):
+            left = list(dict.fromkeys(int(into[p]) for p in corners[k] if p >= 0))
+            if len(left) < 3:
+                fate[k] = Fate.WORN if fate[k] == Fate.LIVING else fate[k]
+            else:
+                corners[k] = [*left, -1][:4]
+        kept = ~np.isin(self.rim, beneath)
+        names = tuple(name for name, stays in zip(self.names, kept, strict=True) if stays)
+        return replace(self, corners=corners, fate=fate, rim=self.rim[kept], names=names, below=below)
 
     def _closed(self) -> Index:
         return np.where(self.corners < 0, self.corners[:, :1], self.corners)
@@ -236,11 +268,12 @@ class Cells:
         return np.vstack([np.stack([loop, np.roll(loop, -1)], axis=1) for loop in loops] or [np.zeros((0, 2), int)])
 
 
-def outlined(points: Array, corners: Index, names: dict[tuple[int, int], str], provenance: str = "") -> Cells:
+def outlined(
+    points: Array, corners: Index, names: dict[tuple[int, int], str], below: Index, provenance: str = ""
+) -> Cells:
     """Cells whose outline has the given name for each of its sides."""
-    corners = corners[np.argsort(corners[:, 3] < 0, kind="stable")]
-    nothing = np.zeros(0, np.intp)
-    bare = Cells(points, corners, np.zeros(len(corners), np.int8), nothing, (), np.zeros(len(corners)), provenance)
+    nothing, fate = np.zeros(0, np.intp), np.zeros(len(corners), np.int8)
+    bare = Cells(points, corners, fate, nothing, (), below, np.zeros(len(corners)), provenance)
     rim = bare._loops()[0]
     named = tuple(names[pair] for pair in zip(rim, np.roll(rim, -1), strict=True))
     return replace(bare, rim=rim, names=named, made=bare.least_jacobians())

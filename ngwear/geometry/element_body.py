@@ -34,6 +34,8 @@ class ElementBody(Meshed):
     outline : Outline
     vertices : array of int, shape (nv,)
         Point of ``cells`` at each mesh vertex.
+    numbers : array of int, shape (ne,)
+        Element of ``cells`` that each mesh element is: quadrilaterals come first.
     """
 
     def __init__(self, cells: Cells) -> None:
@@ -42,7 +44,7 @@ class ElementBody(Meshed):
         self._set_up()
 
     def _set_up(self) -> None:
-        self.mesh, self.vertices = _mesh(self.cells)
+        self.mesh, self.vertices, self.numbers = _mesh(self.cells)
         self.outline = self._outline()
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=1))
 
@@ -108,8 +110,8 @@ class ElementBody(Meshed):
         return Outline(found[:, 0], vertices, found[:, 1], t, np.array(self.base.names))
 
 
-def _mesh(cells: Cells) -> tuple[ng.Mesh, Index]:
-    """Mesh of the living elements, quadrilaterals first, and the point at each of its vertices."""
+def _mesh(cells: Cells) -> tuple[ng.Mesh, Index, Index]:
+    """Mesh of the living elements, the point at each of its vertices, and which element each of its elements is."""
     living, quads = cells.living, cells.quads
     kept = cells.corners[living]
     used = np.unique(kept[kept >= 0])
@@ -119,8 +121,9 @@ def _mesh(cells: Cells) -> tuple[ng.Mesh, Index]:
     mesh.AddPoints(np.column_stack([cells.points[used], np.zeros(len(used))]))
     mesh.Add(ngm.FaceDescriptor(surfnr=1, domin=1, domout=0, bc=1))
     mesh.SetMaterial(1, "rubber")
-    for which, count in ((living & quads, 4), (living & ~quads, 3)):
-        if which.any():
+    kinds = [(np.flatnonzero(living & quads), 4), (np.flatnonzero(living & ~quads), 3)]
+    for which, count in kinds:
+        if len(which):
             mesh.AddElements(dim=2, index=1, data=number[cells.corners[which, :count]], base=0)
     sides = np.stack([cells.rim, np.roll(cells.rim, -1)], axis=1)
     names = np.array(cells.names)
@@ -130,4 +133,4 @@ def _mesh(cells: Cells) -> tuple[ng.Mesh, Index]:
     for k, (name, piece) in enumerate(pieces):
         mesh.AddElements(dim=1, index=k + 1, data=number[piece], base=0)
         mesh.SetBCName(k, name)
-    return ng.Mesh(mesh), used
+    return ng.Mesh(mesh), used, np.concatenate([which for which, _ in kinds])

@@ -60,8 +60,10 @@ def layered(
     corners = np.vstack([quads, np.column_stack([where[triangles], np.full(len(triangles), -1)])])
     named |= {(a, b): name for a, b, name in zip(number[0, :-1], number[0, 1:], names, strict=True)}
     named |= {(where[a], where[b]): name for (a, b), name in sides.items() if name != INSIDE}
+    below = np.full(len(place), -1)
+    below[number[:-1]] = number[1:]
     try:
-        cells = outlined(place, corners, named, contour.provenance)
+        cells = outlined(place, corners, named, below, contour.provenance)
     except KeyError:
         raise MeshError("triangles and layers do not meet: choose other lengths of elements") from None
     if abs(cells.area - cells.contour.area) > 1e-9 * cells.area:

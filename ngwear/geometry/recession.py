@@ -13,6 +13,7 @@ from ngwear.geometry.contour import Array, Contour
 from ngwear.geometry.sizing import SizeField
 
 OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when an outline is healed
+STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which points follow the column
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment
 
 
@@ -54,8 +55,11 @@ def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contou
         return healed(contour, points)
 
 
-def receded(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Array:
-    """The outline's points after that, whether or not it then crosses itself; shape (n, 2) [mm]."""
+def receded(contour: Contour, area: Array, worn_edges: tuple[str, ...], columns: Array | None = None) -> Array:
+    """The outline's points after that, whether or not it then crosses itself; shape (n, 2) [mm].
+
+    ``columns`` are unit vectors along which points shall move instead of their normals, shape (n, 2); zero for none.
+    """
     points, rest = contour.points, np.asarray(area, dtype=float)
     worn = np.flatnonzero(rest > 0)
     if len(worn) == 0:
@@ -64,11 +68,13 @@ def receded(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Array
     typical = rest / contour.widths()
     parts = int(np.ceil(np.max(typical[worn] / (MAX_SUBSTEP * shorter[worn]))))
     for _ in range(max(parts, 1)):
-        points = points + _displacement(points, rest / max(parts, 1), contour, worn_edges)
+        points = points + _displacement(points, rest / max(parts, 1), contour, worn_edges, columns)
     return points
 
 
-def _displacement(points: Array, area: Array, contour: Contour, worn_edges: tuple[str, ...]) -> Array:
+def _displacement(
+    points: Array, area: Array, contour: Contour, worn_edges: tuple[str, ...], columns: Array | None
+) -> Array:
     chord = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
     inward = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
     wears = contour.on(worn_edges)
@@ -78,6 +84,8 @@ def _displacement(points: Array, area: Array, contour: Contour, worn_edges: tupl
     for where, neighbour in ((starts, 1), (ends, -1)):  # slide along the unworn edge
         along = np.roll(points, neighbour, axis=0)[where] - points[where]
         inward[where] = along / np.linalg.norm(along, axis=1)[:, None]
+    if columns is not None:
+        inward = np.where(((inward * columns).sum(axis=1) > STEEPEST)[:, None], columns, inward)
     g = -0.5 * _cross(inward, chord)
     product = _cross(inward, np.roll(inward, -1, axis=0))
     worn = area > 0

@@ -13,7 +13,7 @@ from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.errors import MeshError
-from ngwear.fields.cells import Cells
+from ngwear.fields.element_shapes import Cells
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry import nodal
 from ngwear.geometry.contour import Contour
