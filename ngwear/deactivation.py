@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.effects.base import DISPLACEMENT
 from ngwear.equilibrium.keep import keep
 from ngwear.errors import GeometryError, MeshError, require
 from ngwear.geometry.cells import Cells, Fate
@@ -55,6 +56,16 @@ def stresses(stage: Stage) -> Stresses:
     mean = (kirchhoff * points.volumes[..., None, None]).sum(axis=1) / volume[:, None, None]
     energy = (stage.elasticity.energy(strain) * points.volumes).sum(axis=1) / points.volumes.sum(axis=1)
     return Stresses(np.stack([mean[:, 0, 0], mean[:, 1, 1], 0.5 * (mean[:, 0, 1] + mean[:, 1, 0])], axis=1), energy)
+
+
+def loaded(stage: Stage) -> dict[str, Array]:
+    """Displacement of the points and stresses of the elements in the present state; nan where they are lost."""
+    body, cells = stage.body, stage.body.cells
+    displacement, stress = np.full((len(cells.points), 2), np.nan), np.full((len(cells.fate), 3), np.nan)
+    moved = stage.problem.state.vec.FV().NumPy()[stage.problem.part(DISPLACEMENT)].reshape(2, -1)
+    displacement[body.vertices] = moved[:, : len(body.vertices)].T
+    stress[body.numbers] = stresses(stage).cauchy
+    return {"displacement [mm]": displacement, "stress xx, yy, xy [MPa]": stress}
 
 
 def exhaustion(state: State, repeats: int) -> Array:

@@ -23,6 +23,7 @@ class Snapshot:
     outline: Array
     profiles: dict[str, dict[str, Array]]
     mesh: dict[str, Array]
+    elements: dict[str, Array]
 
 
 @dataclass(frozen=True)
@@ -93,8 +94,9 @@ def read_result(folder: Path | str) -> ResultFile:
                         int(group.attrs["stroke"]),
                         str(group.attrs["kind"]),
                         group["outline [mm]"][()],
-                        {k: v for k, v in parts.items() if k != "mesh"},
+                        {k: v for k, v in parts.items() if k not in ("mesh", "elements")},
                         parts.get("mesh", {}),
+                        parts.get("elements", {}),
                     )
                 )
             rate = "specific wear rate [mm^2/N]"

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ngwear import __version__
 from ngwear.errors import ResultError
 from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, put_series
+from ngwear.geometry.cells import Fate
 from ngwear.geometry.contour import Contour
 from ngwear.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
@@ -29,6 +30,9 @@ def fingerprint(scene: Scene) -> str:
     rest = [repr(getattr(scene, f.name)) for f in fields(scene) if f.name != "contour"]
     content = [contour.points.tobytes(), contour.corners.tobytes(), repr((contour.names, rest)).encode()]
     return hashlib.sha256(b"".join(content)).hexdigest()
+
+
+LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
 
 
 def depths(before: Contour, after: Contour) -> Array:
@@ -47,20 +51,29 @@ class Snapshot:
     outline: Array
     profiles: dict[str, dict[str, Array]]
     mesh: dict[str, Array] | None = None
+    elements: dict[str, Array] | None = None
 
 
 @dataclass
 class Recorder:
-    """Rows and snapshots of a run so far; plain data that a checkpoint carries along."""
+    """Rows and snapshots of a run so far; plain data that a checkpoint carries along.
+
+    ``unworn`` is what depths are measured from: the scene's outline, or that of its elements.
+    """
 
     scene: Scene
     rows: list[dict[str, Any]] = field(default_factory=list)
     snapshots: list[Snapshot] = field(default_factory=list)
     wall: float = 0.0
     cpu: float = 0.0
+    unworn: Contour | None = None
+    unworn_area: float = 0.0
 
     def add(self, state: Any, *, wall: float) -> None:
         """Add the strokes of the state's last step."""
+        if self.unworn is None:
+            self.unworn = self.scene.contour if state.cells is None else state.contour
+            self.unworn_area = self.unworn.area
         for number, report in enumerate(state.reports):
             self.rows.append(self._row(state, report, wall))
             mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else None
@@ -70,7 +83,7 @@ class Recorder:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
-        depth = depths(scene.contour, report.contour)
+        depth = depths(self.unworn, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
             "stroke [-]": report.last_stroke,
@@ -84,8 +97,9 @@ class Recorder:
             "error estimate of maximum depth [mm]": ledger.depth_error,
         }
         for name in dict.fromkeys(scene.worn_edges):
-            on = scene.contour.on((name,))
-            row[f"depth at {name} [mm]"] = float(depth[on].max())
+            row[f"depth at {name} [mm]"] = float(depth[self.unworn.on((name,))].max())
+        if report.cells is not None:
+            row |= self._book(report)
         for contact, profile in report.contacts.items():
             zones = profile.zones()
             highest = max(zones, key=lambda z: z.peak, default=None)
@@ -114,6 +128,18 @@ class Recorder:
         }
         return row
 
+    def _book(self, report: Any) -> dict[str, Any]:
+        """Area that the section has lost by each cause, in all and since the row before, and its elements."""
+        ledger, before = report.ledger, self.rows[-1] if self.rows else {}
+        areas = {"wear": ledger.removed} | {name: ledger.lost[fate] for fate, name in LOST.items()}
+        out: dict[str, Any] = {f"area lost by {name} [mm^2]": area for name, area in areas.items()}
+        out["area lost in all [mm^2]"] = self.unworn_area - report.cells.area
+        out |= {f"{k[:-7]} in this solve [mm^2]": area - before.get(k, 0.0) for k, area in list(out.items())}
+        counts = np.bincount(report.cells.fate, minlength=len(Fate))
+        out |= {f"elements lost by {name} [-]": int(counts[fate]) for fate, name in LOST.items()}
+        out["elements worn away [-]"] = int(counts[Fate.WORN])
+        return out
+
     def _snapshot(self, report: Any, mesh: dict[str, Array] | None) -> Snapshot:
         profiles = {
             name: {
@@ -129,13 +155,18 @@ class Recorder:
             profiles[name]["counter-surface coordinate [mm]"] = counter.along
             profiles[name]["counter-surface depth [mm]"] = counter.depth
         kind = self.scene.program.cycle[report.phase].name
-        return Snapshot(report.last_stroke, kind, report.contour.points, profiles, mesh)
+        last, elements = report.last_stroke, None
+        if report.cells is not None and last in (0, *self.scene.save.strokes, self.scene.program.strokes):
+            cells = report.cells
+            elements = {"points [mm]": cells.points, "corners": cells.corners, "fate": cells.fate} | report.loaded
+        return Snapshot(last, kind, report.contour.points, profiles, mesh, elements)
 
     def summary(self, state: Any, status: str, message: str) -> dict[str, Any]:
         """The run in a few numbers."""
         scene = self.scene
         cycle = [s.name for s in scene.program.cycle]
-        depth = depths(scene.contour, state.contour)
+        unworn = self.unworn or scene.contour
+        depth = depths(unworn, state.contour)
         radius = _mean_radius(scene.contour, state.contour) if scene.axisymmetric else None
         ledger = state.ledger
         out: dict[str, Any] = {
@@ -150,7 +181,10 @@ class Recorder:
         if radius is not None:
             out["worn volume [mm^3]"] = 2 * np.pi * radius
         for name in dict.fromkeys(scene.worn_edges):
-            out[f"{name} depth [mm]"] = float(depth[scene.contour.on((name,))].max())
+            out[f"{name} depth [mm]"] = float(depth[unworn.on((name,))].max())
+        if state.cells is not None:
+            out |= {f"area lost by {name} [mm^2]": ledger.lost[fate] for fate, name in LOST.items()}
+            out["area lost in all [mm^2]"] = self.unworn_area - state.cells.area
         peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
         for kind in cycle:
             rows = [r for r in self.rows if r["kind [-]"] == kind]
@@ -213,7 +247,7 @@ def _deformed_mesh(state: Any, phase: int) -> dict[str, Array]:
     from ngwear.geometry.section import mesh_arrays
 
     stage = state.stage
-    points, triangles = mesh_arrays(stage.body.mesh)
+    points, triangles = mesh_arrays(stage.body.mesh) if state.cells is None else stage.body.triangles()
     u = state.phases[phase].vector[stage.problem.part(DISPLACEMENT)].reshape(2, -1)[:, : len(points)].T
     return {"points [mm]": points + u, "triangles": triangles}
 
@@ -286,5 +320,6 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
             for contact, profile in snapshot.profiles.items():
                 for name, values in profile.items():
                     group[f"{contact}/{name}"] = values
-            for name, values in (snapshot.mesh or {}).items():
-                group[f"mesh/{name}"] = values
+            for part, content in (("mesh", snapshot.mesh), ("elements", snapshot.elements)):
+                for name, values in (content or {}).items():
+                    group[f"{part}/{name}"] = values

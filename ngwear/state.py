@@ -164,6 +164,8 @@ class StrokeReport:
         Book after the stroke's wear.
     cells : Cells or None
         Elements after the stroke's wear, where a scene deactivates some.
+    loaded : dict of str to array
+        Displacement of their points and stresses in them at equilibrium, likewise.
     """
 
     phase: int
@@ -181,3 +183,4 @@ class StrokeReport:
     contour: Contour
     ledger: Ledger
     cells: Cells | None = None
+    loaded: dict[str, Array] = field(default_factory=dict)

@@ -381,6 +381,7 @@ class Stepper:
             contour=state.contour,
             ledger=state.ledger.copy(),
             cells=state.cells,
+            loaded=deactivation.loaded(stage) if self.scene.deactivation is not None else {},
         )
 
     def _approach(self, state: State, index: int, stroke: Stroke, work: Work) -> None:
