@@ -14,6 +14,7 @@ from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.layers import layered
+from ngwear.geometry.recession import STEEPEST
 from ngwear.remesh import adopt
 from ngwear.scene import Scene
 from ngwear.stage import Stage
@@ -192,4 +193,5 @@ def _reached(cells: Cells) -> NDArray[np.intp]:
     normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
     left = ((cells.points[beneath] - place) * normal).sum(axis=1)
     near = THINNEST * np.sqrt(np.median(cells.made[cells.quads]))
-    return rim[(beneath >= 0) & (left < near)]
+    across = (cells.inward() * normal).sum(axis=1) > STEEPEST  # else the column runs along the outline, a wall
+    return rim[(beneath >= 0) & across & (left < near)]
