@@ -193,5 +193,6 @@ def _reached(cells: Cells) -> NDArray[np.intp]:
     normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
     left = ((cells.points[beneath] - place) * normal).sum(axis=1)
     near = THINNEST * np.sqrt(np.median(cells.made[cells.quads]))
-    across = (cells.inward() * normal).sum(axis=1) > STEEPEST  # else the column runs along the outline, a wall
+    # A column along the outline, in a wall, is not worn; one that points outwards has been passed.
+    across = np.abs((cells.inward() * normal).sum(axis=1)) > STEEPEST
     return rim[(beneath >= 0) & across & (left < near)]
