@@ -5,9 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
 
 from ngwear.errors import SceneError
 from ngwear.laws import Constant, FrictionLaw
+
+Array = NDArray[np.float64]
 
 
 class Coefficient:
@@ -40,6 +44,15 @@ class Coefficient:
         """Go to a sliding distance [mm] and a speed [mm/s]; None if the law needs no speed."""
         for parameter, number in zip(self._held, self.law.held(distance, speed), strict=True):
             parameter.Set(number)
+
+    def numbers(self, pressure: Array) -> Array:
+        """Coefficients [-] under Cauchy pressures >= 0 [MPa], in their shape."""
+        held = [parameter.Get() for parameter in self._held]
+        return self.law.of_pressure(held, pressure) + np.zeros_like(pressure)
+
+    def slope(self, pressure: Any) -> Any:
+        """dmu/dp [1/MPa] under a Cauchy pressure >= 0 [MPa]: a number or a field."""
+        return self.law.slope_of_pressure(self._held, pressure)
 
     def __call__(self, pressure: Any) -> Any:
         """Coefficient mu [-] under a Cauchy pressure [MPa], one below 0 taken as 0: a number or a field."""
