@@ -37,8 +37,12 @@ class PressureWear:
     def __init__(self, law: WearLaw, *, modulus: float, coefficient: Coefficient | None = None) -> None:
         self._law, self._coefficient, self._least = law, coefficient, LEAST * modulus
 
-    def tangent(self, pressure: ng.GridFunction, stretch: Any) -> tuple[Any, Any]:
-        """``slope`` [-] and ``rest`` [MPa] of the nominal pressure's field, which is the state; ``stretch`` da/dA."""
+    def tangent(self, pressure: ng.GridFunction, stretch: Any) -> tuple[Any, Any, Any]:
+        """``slope`` [-], ``rest`` [MPa] and ``steepest`` [-] of the state's nominal pressure; ``stretch`` da/dA.
+
+        ``steepest`` is the larger of r' and r / p, for the scale of the contact's method: where r' falls with the
+        pressure, a tangent overshoots to p < 0, and with a scale as small contact would be lost there.
+        """
         self._state, self._tried = pressure, ng.GridFunction(pressure.space)
         p, least, law = self._tried / stretch, self._least, self._law
         above = ng.IfPos(p - least, p, least)
@@ -47,7 +51,7 @@ class PressureWear:
             friction = self._coefficient(above), self._coefficient.slope(above)
         factor, rise = (ng.CF(f(above, friction, ng.IfPos)) for f in (law.factor, law.slope))
         slope = ng.IfPos(p - least, rise, factor)
-        return slope, ng.IfPos(p - least, p * (factor - rise), 0.0)
+        return slope, ng.IfPos(p - least, p * (factor - rise), 0.0), ng.IfPos(slope - factor, slope, factor)
 
     def gather(self) -> None:
         """Take the present state's pressure for P_0."""

@@ -159,11 +159,11 @@ class UnilateralContact(Term):
             self.share = ng.GridFunction(ng.H1(body.mesh, order=1))
             self.share.vec[:] = 1.0
             kappa = kappa * self.share
-        rest = None
+        rest, steepest = None, kappa
         if self.pressure_wear is not None:
-            slope, rest = self.pressure_wear.tangent(unknowns.state[self.pressure_name], stretch)
-            rest, kappa = kappa * rest, kappa * slope
-        self._augmentation = c = 1 / (0.5 * self.softness * give + kappa)
+            slope, rest, steepest = self.pressure_wear.tangent(unknowns.state[self.pressure_name], stretch)
+            kappa, rest, steepest = kappa * slope, kappa * rest, kappa * steepest
+        self._augmentation = c = 1 / (0.5 * self.softness * give + steepest)
         p = unknowns.trial[self.pressure_name]
         gap = self.gap(unknowns.trial)
         worn = None if self.worn is None else self.worn / stretch
