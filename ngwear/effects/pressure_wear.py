@@ -14,16 +14,18 @@ from ngwear.laws.wear_law import NO_FRICTION
 
 Array = NDArray[np.float64]
 LEAST = 1e-6  # of the shear modulus: pressures below wear in proportion, so that no slope is infinite
+FADES = 0.25  # from one tangent of a solve to the next
 
 
 class PressureWear:
-    """The closure ``K r(p)`` of a gap by wear, r = p phi(p), as its tangent at the state that is tried.
+    """The closure ``K r(p)`` of a gap by wear, r = p phi(p), by its tangent at the state that is tried.
 
-        r(p) = r(p_0) + r'(p_0) (p - p_0)
+        r(p) = r(p_0) + slope (p - p_0),    slope = max(r'(p_0), b)
 
-    ``slope`` is r'(p_0) and ``rest`` what is left at p = 0, r(p_0) - r'(p_0) p_0. The pressure P_0 follows the present
-    state in each residual. So the contact's energy stays quadratic and its tangent symmetric; at p = p_0 the closure is
-    the law's, and what the tangent leaves out is of second order.
+    ``rest`` is what is left at p = 0. The pressure P_0 follows the present state in each residual: the contact's energy
+    stays quadratic and its tangent symmetric, and at p = p_0 the closure is the law's. The bound b is r' at the peak of
+    the state that a solve starts from, and fades to nothing: where a law wears next to nothing at low pressures, a
+    place that comes into contact would else be thrown far past its pressure first.
 
     Parameters
     ----------
@@ -36,6 +38,7 @@ class PressureWear:
 
     def __init__(self, law: WearLaw, *, modulus: float, coefficient: Coefficient | None = None) -> None:
         self._law, self._coefficient, self._least = law, coefficient, LEAST * modulus
+        self._bound = ng.Parameter(0.0)
 
     def tangent(self, pressure: ng.GridFunction, stretch: Any) -> tuple[Any, Any, Any]:
         """``slope`` [-], ``rest`` [MPa] and ``steepest`` [-] of the state's nominal pressure; ``stretch`` da/dA.
@@ -49,18 +52,26 @@ class PressureWear:
         friction = NO_FRICTION
         if law.needs_friction:
             friction = self._coefficient(above), self._coefficient.slope(above)
-        factor, rise = (ng.CF(f(above, friction, ng.IfPos)) for f in (law.factor, law.slope))
-        slope = ng.IfPos(p - least, rise, factor)
-        return slope, ng.IfPos(p - least, p * (factor - rise), 0.0), ng.IfPos(slope - factor, slope, factor)
+        factor, slope = (ng.CF(f(above, friction, ng.IfPos)) for f in (law.factor, law.slope))
+        slope = ng.IfPos(p - least, slope, factor)
+        slope = ng.IfPos(slope - self._bound, slope, self._bound)
+        return slope, p * (factor - slope), ng.IfPos(slope - factor, slope, factor)
+
+    def prepare(self, peak: float) -> None:
+        """Begin a solve at a state whose highest Cauchy pressure is ``peak`` [MPa]."""
+        above = max(peak, self._least)
+        self._bound.Set(float(self._law.slope(above, self._friction(above))) / FADES)
 
     def gather(self) -> None:
         """Take the present state's pressure for P_0."""
+        self._bound.Set(FADES * self._bound.Get())
         self._tried.vec.data = self._state.vec
 
     def factor(self, pressure: Array) -> Array:
         """The law's phi of Cauchy pressures [MPa], in their shape [-]."""
         above = np.maximum(pressure, self._least)
-        friction = NO_FRICTION
-        if self._law.needs_friction:
-            friction = self._coefficient.numbers(above), 0.0
-        return np.asarray(self._law.factor(above, friction), dtype=float)
+        return np.asarray(self._law.factor(above, self._friction(above)), dtype=float)
+
+    def _friction(self, pressure: Any) -> tuple[Any, Any]:
+        """Coefficient mu [-] for phi; its slope is left out."""
+        return (self._coefficient.numbers(pressure), 0.0) if self._law.needs_friction else NO_FRICTION

@@ -200,6 +200,8 @@ class UnilateralContact(Term):
     def prepare(self) -> None:
         self._start.vec.data = self._state[DISPLACEMENT].vec
         self._measure()
+        if self.pressure_wear is not None:
+            self.pressure_wear.prepare(self.peak())
 
     def _measure(self) -> None:
         """Extent of the whole surface as the mesh has it now, curved and worn."""

@@ -110,11 +110,12 @@ def tangent_error(problem: Problem, rng: np.random.Generator) -> float:
 
 
 class _HeldWear(PressureWear):
-    """Linearised about 1.3 times the first pressure, which stays, as the tangent has it."""
+    """Linearised about 1.3 times the first pressure, which stays, as the tangent has it; its slope without a bound."""
 
     def gather(self) -> None:
         if not self._tried.vec.Norm():
             self._tried.vec.data = 1.3 * self._state.vec
+            self._bound.Set(0.0)
 
 
 def _contact(surface: RigidSurface, forced: bool, wear: float, law: WearLaw | None = None) -> UnilateralContact:
