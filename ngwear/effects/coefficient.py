@@ -5,13 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import ngsolve as ng
-import numpy as np
-from numpy.typing import NDArray
 
 from ngwear.errors import SceneError
 from ngwear.laws import Constant, FrictionLaw
-
-Array = NDArray[np.float64]
 
 
 class Coefficient:
@@ -45,14 +41,12 @@ class Coefficient:
         for parameter, number in zip(self._held, self.law.held(distance, speed), strict=True):
             parameter.Set(number)
 
-    def numbers(self, pressure: Array) -> Array:
-        """Coefficients [-] under Cauchy pressures >= 0 [MPa], in their shape."""
-        held = [parameter.Get() for parameter in self._held]
-        return self.law.of_pressure(held, pressure) + np.zeros_like(pressure)
-
-    def slope(self, pressure: Any) -> Any:
-        """dmu/dp [1/MPa] under a Cauchy pressure >= 0 [MPa]: a number or a field."""
-        return self.law.slope_of_pressure(self._held, pressure)
+    def with_slope(self, pressure: Any) -> tuple[Any, Any]:
+        """Coefficient mu [-] and dmu/dp [1/MPa] under a Cauchy pressure >= 0 [MPa]: a field, a number or an array."""
+        held = self._held
+        if not isinstance(pressure, ng.CoefficientFunction):
+            held = [parameter.Get() for parameter in held]
+        return self.law.of_pressure(held, pressure), self.law.slope_of_pressure(held, pressure)
 
     def __call__(self, pressure: Any) -> Any:
         """Coefficient mu [-] under a Cauchy pressure [MPa], one below 0 taken as 0: a number or a field."""

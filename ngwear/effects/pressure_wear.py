@@ -13,7 +13,7 @@ from ngwear.laws import WearLaw
 from ngwear.laws.wear_law import NO_FRICTION
 
 Array = NDArray[np.float64]
-LEAST = 1e-6  # of the shear modulus: pressures below wear in proportion, so that no slope is infinite
+LEAST = 1e-8  # of the shear modulus: pressures below wear in proportion, so that no slope is infinite
 FADES = 0.25  # from one tangent of a solve to the next
 
 
@@ -49,9 +49,7 @@ class PressureWear:
         self._state, self._tried = pressure, ng.GridFunction(pressure.space)
         p, least, law = self._tried / stretch, self._least, self._law
         above = ng.IfPos(p - least, p, least)
-        friction = NO_FRICTION
-        if law.needs_friction:
-            friction = self._coefficient(above), self._coefficient.slope(above)
+        friction = self._friction(above)
         factor, slope = (ng.CF(f(above, friction, ng.IfPos)) for f in (law.factor, law.slope))
         slope = ng.IfPos(p - least, slope, factor)
         slope = ng.IfPos(slope - self._bound, slope, self._bound)
@@ -70,8 +68,8 @@ class PressureWear:
     def factor(self, pressure: Array) -> Array:
         """The law's phi of Cauchy pressures [MPa], in their shape [-]."""
         above = np.maximum(pressure, self._least)
-        return np.asarray(self._law.factor(above, self._friction(above)), dtype=float)
+        return self._law.factor(above, self._friction(above)) + np.zeros_like(above)
 
     def _friction(self, pressure: Any) -> tuple[Any, Any]:
-        """Coefficient mu [-] for phi; its slope is left out."""
-        return (self._coefficient.numbers(pressure), 0.0) if self._law.needs_friction else NO_FRICTION
+        """Coefficient mu [-] and its slope [1/MPa], for a law that needs them."""
+        return self._coefficient.with_slope(pressure) if self._law.needs_friction else NO_FRICTION
