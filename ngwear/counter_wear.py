@@ -49,6 +49,7 @@ def worn(stage: Stage, counters: Counters, index: int, sliding: Strokes, shares:
         if spec.name in counters:
             contact = stage.contacts[spec.name]
             ends, pressure = contact.imprint()
+            pressure = pressure * contact.wear_factor(pressure)
             wear = spec.counter_wear_rate * pressure * (sliding.repeats / len(passes))
             if spec.name in shares:
                 wear = wear * shares[spec.name][contact.profile().edges]

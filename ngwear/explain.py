@@ -35,7 +35,9 @@ def explain(scene: Scene) -> dict[str, Any]:
     if scene.fluid is not None:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
     if rate > 0:
-        present["wear"] = f"Archard, {scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
+        laws = [c.wear_law.words if c.wear_law else "Archard" for c in scene.contacts if c.wears]
+        how = f"{scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
+        present["wear"] = f"{' / '.join(dict.fromkeys(laws))}, {how}"
     present |= {f"wear rate at '{c.name}'": _wear_in_words(scene, c) for c in scene.contacts if c.wear_rate.varies}
     present |= {
         f"wear of the surface of '{c.name}'": f"k = {c.counter_wear_rate:g} mm²/N, a profile that moves with it"

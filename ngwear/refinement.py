@@ -61,9 +61,11 @@ def _contact_places(stage: Stage, phases: list[Array], reach: float, sliding: fl
     for phase in phases:
         vector[:] = phase
         for spec in stage.scene.followed:
-            profile = stage.contacts[spec.name].profile()
+            contact = stage.contacts[spec.name]
+            profile = contact.profile()
             pressure = profile.nominal_pressure
-            deepest = spec.wear_rate.highest * sliding * pressure.max(initial=0.0)
+            wearing = pressure * contact.wear_factor(profile.pressure)
+            deepest = spec.wear_rate.highest * sliding * wearing.max(initial=0.0)
             near = (pressure > 0) | (profile.gap < reach * stage.scene.accuracy.patch + deepest)
             ask |= _spanned(contour, profile, near)
     vector[:] = keep

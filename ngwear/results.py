@@ -311,6 +311,8 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
             rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
             mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
             group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
+            if spec.wear_law is not None:
+                group.attrs["wear law"] = spec.wear_law.words
         put_series(h5, recorder.rows)
         strokes = h5.create_group("strokes")
         for number, snapshot in enumerate(recorder.snapshots):

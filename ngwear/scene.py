@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 from ngwear.errors import require
 from ngwear.geometry.contour import Contour
-from ngwear.laws import FrictionLaw, WearRate, law_of
+from ngwear.laws import FrictionLaw, WearLaw, WearRate, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.program import Program
 from ngwear.surfaces import RigidSurface
@@ -33,6 +33,8 @@ class ContactSpec:
         stroke; left to ``Scene.may_stick`` unless given.
     specific_wear_rate : WearRate or float
         Archard's k [mm²/N], >= 0: depth per nominal pressure and sliding distance.
+    wear_law : WearLaw or None
+        What the wear makes of the pressure, times that k; Archard's law unless given. The surface wears by it too.
     counter_wear_rate : float
         That of the surface, which keeps a worn profile of its own [mm²/N], >= 0; only where the part wears too.
     force : float or None
@@ -48,6 +50,7 @@ class ContactSpec:
     slides: bool = True
     sticks: bool | None = None
     specific_wear_rate: WearRate | float = 0.0
+    wear_law: WearLaw | None = None
     counter_wear_rate: float = 0.0
     force: float | None = None
     refine: bool = False
@@ -75,6 +78,12 @@ class ContactSpec:
             f"{place}.specific_wear_rate",
             self.specific_wear_rate,
             "a surface that stands still (slides = false) wears nothing: leave its wear rate out",
+        )
+        require(
+            self.wear_law is None or not self.wear_law.needs_friction or self.friction_law is not None,
+            f"{place}.wear_law",
+            self.wear_law,
+            "wears by the work of friction: give the contact a friction",
         )
         require(
             self.force is None or self.force > 0, f"{place}.force", self.force, "must be greater than 0 (it presses)"

@@ -10,7 +10,7 @@ from typing import Any
 from ngwear.errors import SceneError
 from ngwear.geometry.contour_files import read_contour
 from ngwear.input.deactivation import read_deactivation
-from ngwear.input.laws import read_friction, read_wear_rate
+from ngwear.input.laws import read_friction, read_wear_law, read_wear_rate
 from ngwear.input.material import read_arms, read_material
 from ngwear.input.pin import pin_scene
 from ngwear.input.tables import coordinate, get, known, record, subtable, tables, typed
@@ -98,7 +98,8 @@ def _contact(number: int, table: dict[str, Any], folder: Path) -> ContactSpec:
         raise SceneError(f"{place}.surface", surface, 'must be a table, such as { type = "rod", diameter = 22.2 }')
     surface = dict(surface)
     values["surface"] = _surface(f"{place}.surface", surface)
-    for key, read in (("friction", read_friction), ("specific_wear_rate", read_wear_rate)):
+    laws = (("friction", read_friction), ("specific_wear_rate", read_wear_rate), ("wear_law", read_wear_law))
+    for key, read in laws:
         if key in values:
             values[key] = read(f"{place}.{key}", values[key], folder)
     return record(ContactSpec, place, values)

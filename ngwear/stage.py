@@ -11,6 +11,7 @@ from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import Friction, FullSliding
+from ngwear.effects.pressure_wear import PressureWear
 from ngwear.effects.stick_slip import StickSlip
 from ngwear.effects.stroke_memory import StrokeMemory
 from ngwear.equilibrium.problem import Problem, Support
@@ -62,6 +63,10 @@ class Stage:
                 kind = StickSlip if scene.may_stick(spec) else FullSliding
                 contact, speed = self.contacts[spec.name], scene.program.cycle[0].speed
                 self.frictions[spec.name] = kind(contact, spec.friction_law, speed=speed)
+            if spec.wears and spec.wear_law is not None:
+                mu = self.frictions[spec.name].coefficient if spec.name in self.frictions else None
+                wear = PressureWear(spec.wear_law, modulus=modulus, coefficient=mu)
+                self.contacts[spec.name].pressure_wear = wear
         self.fluid = None
         if scene.fluid is not None:
             self.fluid = FluidPressure(scene.fluid.edges, scene.fluid.inlet, tuple(self.contacts.values()))

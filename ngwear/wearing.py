@@ -149,6 +149,7 @@ class Wearing:
             contact = stage.contacts[spec.name]
             profile = contact.profile()
             rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
+            rate *= contact.wear_factor(profile.pressure)
             rate /= contact.at_nodes(stage.elasticity.volume_ratio())
             last = contact.from_points(self.last[k] / width) * profile.weight
             last *= self.last[k].sum() / last.sum() if last.any() else 1.0

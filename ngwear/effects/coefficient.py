@@ -41,6 +41,13 @@ class Coefficient:
         for parameter, number in zip(self._held, self.law.held(distance, speed), strict=True):
             parameter.Set(number)
 
+    def with_slope(self, pressure: Any) -> tuple[Any, Any]:
+        """Coefficient mu [-] and dmu/dp [1/MPa] under a Cauchy pressure >= 0 [MPa]: a field, a number or an array."""
+        held = self._held
+        if not isinstance(pressure, ng.CoefficientFunction):
+            held = [parameter.Get() for parameter in held]
+        return self.law.of_pressure(held, pressure), self.law.slope_of_pressure(held, pressure)
+
     def __call__(self, pressure: Any) -> Any:
         """Coefficient mu [-] under a Cauchy pressure [MPa], one below 0 taken as 0: a number or a field."""
         if not self.law.depends_on_pressure:

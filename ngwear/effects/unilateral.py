@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.pressure_wear import PressureWear
 from ngwear.geometry.meshed import Meshed
 from ngwear.surfaces import RigidSurface
 
@@ -55,6 +56,9 @@ class UnilateralContact(Term):
         slips there over the way that the surface slides.
     worn : ng.GridFunction or None
         Depth that is worn in the same step whatever P [mm per reference area], of a contact that keeps one.
+    pressure_wear : PressureWear or None
+        To be set before the contact is added to a form: a law of wear other than Archard's, by which kappa p becomes
+        ``kappa p phi(p)``.
     softness : ng.Parameter
         Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
         it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
@@ -78,6 +82,7 @@ class UnilateralContact(Term):
         self.slips_in_part = False
         self.share: ng.GridFunction | None = None
         self.worn: ng.GridFunction | None = None
+        self.pressure_wear: PressureWear | None = None
         self.load = ng.Parameter(0.0)
         self._extent = ng.Parameter(1.0)  # of the whole surface as it is meshed and worn [mm, or mm²]
         kind = "force [N]" if force_controlled else "approach [mm]"
@@ -154,10 +159,17 @@ class UnilateralContact(Term):
             self.share = ng.GridFunction(ng.H1(body.mesh, order=1))
             self.share.vec[:] = 1.0
             kappa = kappa * self.share
-        self._augmentation = c = 1 / (0.5 * self.softness * give + kappa)
+        rest, steepest = None, kappa
+        if self.pressure_wear is not None:
+            slope, rest, steepest = self.pressure_wear.tangent(unknowns.state[self.pressure_name], stretch)
+            kappa, rest, steepest = kappa * slope, kappa * rest, kappa * steepest
+        self._augmentation = c = 1 / (0.5 * self.softness * give + steepest)
         p = unknowns.trial[self.pressure_name]
         gap = self.gap(unknowns.trial)
-        pushed = p - c * (gap if self.worn is None else gap + self.worn / stretch)
+        worn = None if self.worn is None else self.worn / stretch
+        if rest is not None:
+            worn = rest if worn is None else worn + rest
+        pushed = p - c * (gap if worn is None else gap + worn)
         closure = 1 + c * (1e-6 * give + kappa / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight
@@ -168,6 +180,14 @@ class UnilateralContact(Term):
             travel = unknowns.trial[self.travel_name]
             form += ng.Variation(-self.load * travel / self._extent * ng.ds(definedon=everywhere))
         self._measure()
+
+    def gather(self) -> None:
+        if self.pressure_wear is not None:
+            self.pressure_wear.gather()
+
+    def wear_factor(self, pressure: Array) -> Array | float:
+        """What multiplies k p, of a law of wear that is not Archard's; of Cauchy pressures [MPa]."""
+        return 1.0 if self.pressure_wear is None else self.pressure_wear.factor(pressure)
 
     def force(self) -> Array:
         """Resultant of the contact pressure on the rubber; [N], or N/mm in plane strain."""
@@ -180,6 +200,8 @@ class UnilateralContact(Term):
     def prepare(self) -> None:
         self._start.vec.data = self._state[DISPLACEMENT].vec
         self._measure()
+        if self.pressure_wear is not None:
+            self.pressure_wear.prepare(self.peak())
 
     def _measure(self) -> None:
         """Extent of the whole surface as the mesh has it now, curved and worn."""

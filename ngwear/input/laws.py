@@ -1,4 +1,4 @@
-"""The values ``friction`` and ``specific_wear_rate`` of a contact: a number, or a table that says which law."""
+"""The values ``friction``, ``specific_wear_rate`` and ``wear_law`` of a contact: numbers, or tables that say which."""
 
 from __future__ import annotations
 
@@ -8,10 +8,28 @@ from typing import Any
 
 from ngwear.errors import SceneError
 from ngwear.input.tables import get, known, record, typed
-from ngwear.laws import ByPressure, FrictionLaw, Lubrication, Product, Stribeck, WearRate
+from ngwear.laws import (
+    ByPressure,
+    FrictionalEnergyWear,
+    FrictionLaw,
+    Lubrication,
+    PowerWear,
+    Product,
+    SaturatingWear,
+    Stribeck,
+    ThresholdWear,
+    WearLaw,
+    WearRate,
+)
 from ngwear.laws.fit import fit_lubrication
 
 _LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
+_WEAR_LAWS = {
+    "power": PowerWear,
+    "threshold": ThresholdWear,
+    "saturating": SaturatingWear,
+    "frictional energy": FrictionalEnergyWear,
+}
 
 
 def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
@@ -51,6 +69,23 @@ def read_wear_rate(place: str, value: Any, folder: Path) -> WearRate | float:
     return _table(place, {key: inner for key, inner in value.items() if key != "source"}, folder, WearRate)
 
 
+def read_wear_law(place: str, value: Any, folder: Path) -> WearLaw:
+    """A table with ``law`` and the law's values.
+
+    Raises
+    ------
+    SceneError
+        For an unknown law or key, or a value out of range.
+    """
+    if not isinstance(value, dict):
+        raise SceneError(place, value, 'must be a table, such as { law = "power", exponent = 2.0 }')
+    kind = get(value, place, "law")
+    if not isinstance(kind, str) or kind not in _WEAR_LAWS:
+        raise SceneError(f"{place}.law", kind, f"must be one of {list(_WEAR_LAWS)}")
+    values = {key: inner for key, inner in value.items() if key not in ("law", "source")}
+    return _table(place, values, folder, _WEAR_LAWS[kind])
+
+
 def _product(place: str, values: dict[str, Any], folder: Path) -> Product:
     known(f"{place}.", values, {"factors"})
     factors = get(values, place, "factors")
@@ -79,5 +114,7 @@ def _placed(before: str, build: Callable[[], Any]) -> Any:
     except SceneError as error:
         if error.place.startswith(before):
             raise
-        inner = error.place.removeprefix("friction.").removeprefix("specific_wear_rate.")
+        inner = error.place
+        for own in ("friction.", "specific_wear_rate.", "wear_law."):
+            inner = inner.removeprefix(own)
         raise SceneError(f"{before}{inner}", error.value, error.remedy) from None

@@ -61,6 +61,10 @@ class FrictionLaw(abc.ABC):
         """Coefficient mu [-] of what ``held`` gave and a Cauchy pressure, >= 0 [MPa]."""
         return held[0]
 
+    def slope_of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
+        """Its derivative dmu/dp there [1/MPa]."""
+        return 0.0
+
     def mu(self, distance: float, speed: float | None = None, pressure: Any = 0.0) -> Any:
         """Coefficient of friction [-], with the shape of the pressure [MPa] if the law depends on it."""
         return self.of_pressure(self.held(distance, speed), pressure)

@@ -55,6 +55,10 @@ class ByPressure(FrictionLaw):
     def of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
         return self.limit + (self.light - self.limit) * (1 + pressure / self.pressure) ** -self.exponent
 
+    def slope_of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
+        fall = self.exponent * (self.limit - self.light) / self.pressure
+        return fall * (1 + pressure / self.pressure) ** (-self.exponent - 1)
+
     @property
     def words(self) -> str:
         return f"by pressure, from {self.light:g} at 0 to {self.limit:g}, scale {self.pressure:g} MPa"

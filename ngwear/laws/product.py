@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,11 +49,26 @@ class Product(FrictionLaw):
         return tuple(number for law in self.factors for number in law.held(distance, speed))
 
     def of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
-        product, rest = 1.0, list(held)
+        product = 1.0
+        for law, mine in self._shared(held):
+            product = product * law.of_pressure(mine, pressure)
+        return product
+
+    def slope_of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
+        product, slope = 1.0, 0.0
+        for law, mine in self._shared(held):
+            value = law.of_pressure(mine, pressure)
+            slope = slope * value + product * law.slope_of_pressure(mine, pressure)
+            product = product * value
+        return slope
+
+    def _shared(self, held: Sequence[Any]) -> Iterator[tuple[FrictionLaw, Sequence[Any]]]:
+        """Each law with what it holds of ``held``."""
+        rest = list(held)
         for law in self.factors:
             mine = len(law.held(0.0, 1.0))
-            product, rest = product * law.of_pressure(rest[:mine], pressure), rest[mine:]
-        return product
+            yield law, rest[:mine]
+            rest = rest[mine:]
 
     @property
     def words(self) -> str:

@@ -5,7 +5,7 @@ At a smooth, random, admissible state x and for a random direction d, ``K(x) d``
 unknowns' rows (displacement, pressures, travel), so that none hides another; the reference is 0. Strains
 are near 10 %. Contact is loaded left of the middle and open right of it; the change of state is too small
 to carry an integration point across. What a solve holds fixed (the stretch in the wear compliance, the
-wetted part of the outline) is fixed here.
+wetted part of the outline, the pressure about which a law of wear is linearised) is fixed here.
 """
 
 from __future__ import annotations
@@ -17,11 +17,13 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term
+from ngwear.effects.coefficient import Coefficient
 from ngwear.effects.contact import Contact
 from ngwear.effects.contact_patch import PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
+from ngwear.effects.pressure_wear import PressureWear
 from ngwear.effects.stick_slip import StickSlip
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.effects.viscosity import Viscosity
@@ -29,7 +31,7 @@ from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Solid
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.sheet import Sheet
-from ngwear.laws import ByPressure
+from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
 from ngwear.surfaces import Cylinder, Plane, RigidSurface, Sphere
 from ngwear.verify.base import Check, Stopwatch
@@ -44,6 +46,13 @@ MATERIALS = {
 }
 ARMS = PronySeries((3.0, 2.0), (0.1, 1.0))
 FRICTION = {"": 0.8, " by pressure": ByPressure(light=0.9, limit=0.1, pressure=0.8, exponent=0.7)}
+WEAR_LAWS = {
+    "power 2": PowerWear(exponent=2.0),
+    "power 0.5": PowerWear(exponent=0.5),
+    "threshold": ThresholdWear(pressure=0.8),
+    "saturating": SaturatingWear(pressure=0.8),
+    "frictional energy": FrictionalEnergyWear(),
+}
 SECTION = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
 SOLID = {"solid": Solid()}
 KINEMATICS = SECTION | SOLID
@@ -100,9 +109,20 @@ def tangent_error(problem: Problem, rng: np.random.Generator) -> float:
     return float(max(errors))
 
 
-def _contact(surface: RigidSurface, forced: bool, wear: float) -> UnilateralContact:
+class _HeldWear(PressureWear):
+    """Linearised about 1.3 times the first pressure, which stays, as the tangent has it; its slope without a bound."""
+
+    def gather(self) -> None:
+        if not self._tried.vec.Norm():
+            self._tried.vec.data = 1.3 * self._state.vec
+            self._bound.Set(0.0)
+
+
+def _contact(surface: RigidSurface, forced: bool, wear: float, law: WearLaw | None = None) -> UnilateralContact:
     kind = PatchContact if isinstance(surface, Sphere) else Contact
     contact = kind("rigid", ("top",), surface, force_controlled=forced, modulus=1.5)
+    if law is not None:
+        contact.pressure_wear = _HeldWear(law, modulus=1.5, coefficient=Coefficient("rigid", FRICTION[" by pressure"]))
     contact.load.Set(2.0 if forced else 0.05)
     contact.compliance.Set(wear)
     return contact
@@ -117,6 +137,9 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
         for forced, wear in itertools.product((False, True), (0.0, 0.02)):
             how = f"{'force' if forced else 'displacement'}{' and wear' if wear else ''}"
             yield f"contact, {name}, {how}, {kin}", kinematics, [_contact(surface, forced, wear)]
+        for law, wear_law in WEAR_LAWS.items():
+            contact = _contact(surface, True, 0.02, wear_law)
+            yield f"contact, {name}, force and wear, {law}, {kin}", kinematics, [contact]
         for forced in (False, True):
             how = "force" if forced else "displacement"
             for by, law in FRICTION.items():
@@ -146,6 +169,7 @@ def run() -> list[Check]:
         _set_state(problem, rng)
         for term in terms:
             term.prepare()
+            term.gather()
             if isinstance(term, FluidPressure):
                 term.wetted.Set(0.5 + 0.5 * ng.sin(ng.x + ng.y))
             if isinstance(term, Viscosity):

@@ -1,0 +1,49 @@
+"""Wear by a power of the pressure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from ngwear.laws.base import require_number
+from ngwear.laws.wear_law import NO_FRICTION, Choice, WearLaw, if_positive
+
+
+@dataclass(frozen=True, kw_only=True)
+class PowerWear(WearLaw):
+    """``phi = (p / p_ref)^(m - 1)``: depth over distance ``k p_ref (p / p_ref)^m``.
+
+    Rhee's wear equation for polymers at one speed (S.K. Rhee, Wear 16 (1970) 431), common for the abrasion of rubber.
+    The scale p_ref keeps k in mm²/N: it is where the law wears as Archard's with the same k.
+
+    Valid within the pressures that m was measured at; for m < 1 the wear rate is steep where a contact begins.
+
+    Parameters
+    ----------
+    exponent : float
+        m [-], > 0; 1 is Archard's law.
+    reference_pressure : float
+        p_ref [MPa], > 0.
+
+    Raises
+    ------
+    SceneError
+        For a value out of range.
+    """
+
+    exponent: float
+    reference_pressure: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_number("wear_law.exponent", self.exponent, above=0.0)
+        require_number("wear_law.reference_pressure", self.reference_pressure, above=0.0)
+
+    def factor(self, pressure: Any, friction: tuple[Any, Any] = NO_FRICTION, choose: Choice = if_positive) -> Any:
+        return (pressure / self.reference_pressure) ** (self.exponent - 1)
+
+    def slope(self, pressure: Any, friction: tuple[Any, Any] = NO_FRICTION, choose: Choice = if_positive) -> Any:
+        return self.exponent * self.factor(pressure)
+
+    @property
+    def words(self) -> str:
+        return f"power of the pressure, k p (p / {self.reference_pressure:g} MPa)^{self.exponent - 1:g}"
