@@ -159,10 +159,13 @@ class Stage:
         return self.mounted_loads() | loads
 
     def mounted_loads(self) -> dict[str, float]:
-        """Loads of the mounted part before the first stroke: no fluid pressure, and nothing has slid yet."""
+        """Loads of the mounted part before the first stroke: no fluid pressure, and nothing has slid yet.
+
+        Full sliding has no such state; a surface in it is mounted sliding, but for rubber that may tear.
+        """
         loads = self.stroke_loads(self.scene.program.cycle[0])
         for friction in self.frictions.values():
-            if isinstance(friction, StickSlip):
+            if isinstance(friction, StickSlip) or self.scene.deactivation is not None:
                 loads |= dict.fromkeys(friction.loads, 0.0)
         if self.fluid is not None:
             loads |= dict.fromkeys(self.fluid.loads, 0.0)

@@ -390,7 +390,7 @@ class Stepper:
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
         vector[:] = state.phases[index].vector
-        if not stage.remembers:
+        if not stage.remembers or self.scene.deactivation is not None:
             try:
                 work.add(relax(problem, StepOptions(first=0.25)))
                 return
