@@ -34,6 +34,7 @@ CASES: dict[str, str] = {
     "fretting": "ngwear.verify.fretting",
     "measured_profile": "ngwear.verify.measured_profile",
     "stability_pair": "ngwear.verify.stability_pair",
+    "notched_strip": "ngwear.verify.notched_strip",
     "lubrication": "ngwear.verify.lubrication",
     "sliding_roller": "ngwear.verify.sliding_roller",
     "shaft_on_plate": "ngwear.verify.shaft_on_plate",
