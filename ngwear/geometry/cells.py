@@ -160,7 +160,7 @@ class Cells:
     def without(self, dead: Mask, fate: Fate) -> Cells:
         """The section after some elements are lost, and with them what then hangs on nothing or on a single point.
 
-        An exposed side takes the name of the nearest one of the outline before.
+        An exposed side takes the name of the nearest one of the outline before; one that faces away counts as farther.
 
         Raises
         ------
@@ -233,15 +233,15 @@ class Cells:
         return sides[~np.isin(sides[:, 0] * size + sides[:, 1], sides[:, 1] * size + sides[:, 0])]
 
     def _with_rim(self, before: Cells) -> Cells:
-        from scipy.spatial import cKDTree
-
         rim = _around(self._loops()[0], before.rim)
+        pairs = list(zip(rim, np.roll(rim, -1), strict=True))
         old = {(a, b): name for a, b, name in zip(before.rim, np.roll(before.rim, -1), before.names, strict=True)}
-        middles = 0.5 * (before.points[before.rim] + before.points[np.roll(before.rim, -1)])
-        mine = 0.5 * (self.points[rim] + self.points[np.roll(rim, -1)])
-        _, nearest = cKDTree(middles).query(mine)
-        pairs = zip(rim, np.roll(rim, -1), nearest, strict=True)
-        return replace(self, rim=rim, names=tuple(old.get((a, b), before.names[k]) for a, b, k in pairs))
+        places, ahead = _middles(before.points, before.rim)
+        mine, along = _middles(self.points, rim)
+        # Of sides as near, one that faces the same way: else a new corner of a layer would be named after its flank.
+        off = np.linalg.norm(mine[:, None] - places, axis=2) * (2.0 - along @ ahead.T)
+        names = tuple(old.get(pair, before.names[k]) for pair, k in zip(pairs, off.argmin(axis=1), strict=True))
+        return replace(self, rim=rim, names=names)
 
     def _loops(self) -> list[Index]:
         """Closed chains of boundary points, the outline first, then holes."""
@@ -277,6 +277,13 @@ def outlined(
     rim = bare._loops()[0]
     named = tuple(names[pair] for pair in zip(rim, np.roll(rim, -1), strict=True))
     return replace(bare, rim=rim, names=named, made=bare.least_jacobians())
+
+
+def _middles(points: Array, rim: Index) -> tuple[Array, Array]:
+    """Middle and direction of each segment of an outline, shapes (k, 2)."""
+    start, end = points[rim], points[np.roll(rim, -1)]
+    ahead = end - start
+    return 0.5 * (start + end), ahead / np.linalg.norm(ahead, axis=1)[:, None]
 
 
 def _around(loop: Index, before: Index) -> Index:
