@@ -35,6 +35,7 @@ CASES: dict[str, str] = {
     "measured_profile": "ngwear.verify.measured_profile",
     "stability_pair": "ngwear.verify.stability_pair",
     "notched_strip": "ngwear.verify.notched_strip",
+    "lost_elements": "ngwear.verify.lost_elements",
     "lubrication": "ngwear.verify.lubrication",
     "sliding_roller": "ngwear.verify.sliding_roller",
     "shaft_on_plate": "ngwear.verify.shaft_on_plate",
