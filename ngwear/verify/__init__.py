@@ -36,6 +36,7 @@ CASES: dict[str, str] = {
     "stability_pair": "ngwear.verify.stability_pair",
     "notched_strip": "ngwear.verify.notched_strip",
     "lost_elements": "ngwear.verify.lost_elements",
+    "tearing_off": "ngwear.verify.no_loss",
     "lubrication": "ngwear.verify.lubrication",
     "sliding_roller": "ngwear.verify.sliding_roller",
     "shaft_on_plate": "ngwear.verify.shaft_on_plate",
