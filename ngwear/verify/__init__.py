@@ -37,6 +37,7 @@ CASES: dict[str, str] = {
     "notched_strip": "ngwear.verify.notched_strip",
     "lost_elements": "ngwear.verify.lost_elements",
     "tearing_off": "ngwear.verify.no_loss",
+    "material_book": "ngwear.verify.material_book",
     "lubrication": "ngwear.verify.lubrication",
     "sliding_roller": "ngwear.verify.sliding_roller",
     "shaft_on_plate": "ngwear.verify.shaft_on_plate",
