@@ -143,7 +143,10 @@ def lose(state: State, cells: Cells, dead: Mask, fate: Fate) -> None:
 
 def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
     """The section without some elements, their areas in the book of the state."""
-    left = cells.without(dead, fate)
+    scene = state.stage.scene
+    touching = {edge for contact in scene.contacts for edge in contact.edges}
+    bonded = tuple(edge for support in scene.supports for edge in support.edges if edge not in touching)
+    left = cells.without(dead, fate, bonded)
     areas = cells.areas()
     newly = cells.living & ~left.living
     for cause in (Fate.TORN, Fate.DISTORTED, Fate.LOOSE):

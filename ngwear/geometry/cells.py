@@ -14,7 +14,7 @@ from ngwear.geometry.contour import Array, Contour
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-HOLE = "hole"
+HOLE, EXPOSED = "hole", "exposed"
 CUT = 0.05  # of the section: how much may come loose at once before it counts as cut in two
 
 
@@ -157,10 +157,11 @@ class Cells:
         real = sides[:, 0] != sides[:, 1]
         return sides[real], owner[real]
 
-    def without(self, dead: Mask, fate: Fate) -> Cells:
+    def without(self, dead: Mask, fate: Fate, bonded: tuple[str, ...] = ()) -> Cells:
         """The section after some elements are lost, and with them what then hangs on nothing or on a single point.
 
         An exposed side takes the name of the nearest one of the outline before; one that faces away counts as farther.
+        The names of ``bonded`` edges are not passed on: what held them holds nothing behind them.
 
         Raises
         ------
@@ -175,7 +176,7 @@ class Cells:
             if not loose.any():
                 loose = new._hanging()
             if not loose.any():
-                return new._with_rim(self)
+                return new._with_rim(self, bonded)
             fates = new.fate.copy()
             fates[loose] = Fate.LOOSE
             new = replace(new, fate=fates)
@@ -232,7 +233,7 @@ class Cells:
         size = len(self.points)
         return sides[~np.isin(sides[:, 0] * size + sides[:, 1], sides[:, 1] * size + sides[:, 0])]
 
-    def _with_rim(self, before: Cells) -> Cells:
+    def _with_rim(self, before: Cells, bonded: tuple[str, ...]) -> Cells:
         rim = _around(self._loops()[0], before.rim)
         pairs = list(zip(rim, np.roll(rim, -1), strict=True))
         old = {(a, b): name for a, b, name in zip(before.rim, np.roll(before.rim, -1), before.names, strict=True)}
@@ -240,8 +241,11 @@ class Cells:
         mine, along = _middles(self.points, rim)
         # Of sides as near, one that faces the same way: else a new corner of a layer would be named after its flank.
         off = np.linalg.norm(mine[:, None] - places, axis=2) * (2.0 - along @ ahead.T)
-        names = tuple(old.get(pair, before.names[k]) for pair, k in zip(pairs, off.argmin(axis=1), strict=True))
-        return replace(self, rim=rim, names=names)
+        off[:, np.isin(before.names, bonded)] = np.inf
+        nearest = [
+            before.names[k] if np.isfinite(row[k]) else EXPOSED for row, k in zip(off, off.argmin(1), strict=True)
+        ]
+        return replace(self, rim=rim, names=tuple(map(old.get, pairs, nearest)))
 
     def _loops(self) -> list[Index]:
         """Closed chains of boundary points, the outline first, then holes."""
