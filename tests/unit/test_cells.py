@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -39,6 +41,7 @@ def sides(cells):
         ([(0, 0), (2, 0), (3, 2), (0, 1)], (2, 3, 0, 1), 3.5, np.sqrt(0.5), 2.0),
         ([(0, 0), (4, 0), (0, 3)], (0, 1, 2), 6.0, 0.8, 12.0),
         ([(0, 0), (4, 0), (0, 3)], (1, 2, 0), 6.0, 0.8, 12.0),
+        ([(0, 0), (4, 0), (0, 3)], (2, 0, 1), 6.0, 0.8, 12.0),
         ([(0, 0), (4, 0), (1, 1), (0, 4)], (0, 1, 2, 3), 4.0, 1.0, -8.0),  # a dart is inside out at its notch
     ],
 )
@@ -69,10 +72,10 @@ def test_a_lost_layer_leaves_one_of_the_same_name_with_its_corners():
 
 
 def test_the_outline_begins_where_it_did_as_long_as_that_point_is_left():
-    assert lost((2, 4)).rim[0] == BLOCK.rim[0]
-    first = BLOCK.points[BLOCK.rim[0]]
-    corner = int(first[0] > 0) * (N - 1), int(first[1] > 0) * (M - 1)
-    assert lost(corner).rim[0] == BLOCK.rim[1]
+    for begin in range(len(BLOCK.rim)):
+        turned = replace(BLOCK, rim=np.roll(BLOCK.rim, -begin), names=BLOCK.names[begin:] + BLOCK.names[:begin])
+        assert turned.without(mask((2, 4)), Fate.TORN).rim[0] == turned.rim[0]
+        assert turned.without(mask((0, 0)), Fate.TORN).rim[0] == turned.rim[int(turned.rim[0] == 0)]
 
 
 def test_what_a_support_held_is_not_passed_on():
@@ -109,6 +112,15 @@ def test_elements_that_meet_in_one_point_are_no_hinge():
     assert (left.fate == Fate.DISTORTED).sum() == 2
     around = left.holes()[:, 0]
     assert len(around) == len(np.unique(around)) == 8
+
+
+@pytest.mark.parametrize("middle", [2.9, 3.1])
+def test_of_the_elements_at_a_hinge_the_smaller_goes(middle):
+    uneven = grid(np.array([0.0, 1.0, 2.0, middle, 4.0, 5.0, 6.0]), np.arange(M + 1.0))
+    left = uneven.without(mask((2, 2), (3, 3)), Fate.TORN)
+    widths = {(2, 3): middle - 2, (3, 2): 4 - middle}
+    smaller = min(widths, key=widths.get)
+    assert np.flatnonzero(left.fate == Fate.LOOSE).tolist() == np.flatnonzero(mask(smaller)).tolist()
 
 
 def test_a_hinge_at_the_surface_goes_as_well():
