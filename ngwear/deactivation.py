@@ -128,8 +128,8 @@ def tire(state: State, repeats: int, *, last: bool) -> None:
     deactivation = state.stage.scene.deactivation
     if deactivation is None or deactivation.damage is None or not deactivation.damage.accumulates:
         return
-    living = state.stage.body.cells.living
-    state.strained[living] = np.maximum(state.strained[living], deactivation.damage.exhaustion(stresses(state.stage)))
+    mine = state.stage.body.numbers
+    state.strained[mine] = np.maximum(state.strained[mine], deactivation.damage.exhaustion(stresses(state.stage)))
     if last:
         state.fatigue = state.fatigue + repeats * state.strained
         state.strained = np.zeros_like(state.strained)
