@@ -24,6 +24,7 @@ from ngwear.wear.damage import Stresses
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
+IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
 THINNEST = 0.2  # of an element's side: how near a surface node comes to the one beneath before both become one
 
 
@@ -43,41 +44,46 @@ def element_body(scene: Scene) -> ElementBody:
 
 
 def stresses(stage: Stage) -> Stresses:
-    """Stresses of the living elements in the present state, in the mesh's order."""
+    """Stresses in the present state at the integration points of the living elements, in the mesh's order."""
     problem = stage.problem
-    points = problem.points
-    points.follow()
-    strain = points.strain(problem.state.vec.FV().NumPy())
+    problem.points.follow()
+    strain = problem.points.strain(problem.state.vec.FV().NumPy())
     piola, _ = stage.elasticity.response(strain, tangent=False)
-    gradient = strain[..., :4] + np.array([1.0, 0.0, 0.0, 1.0])
-    p, f = (a[..., :4].reshape(*a.shape[:-1], 2, 2) for a in (piola, gradient))
-    volume = (points.volumes * np.linalg.det(f) * (1.0 + strain[..., 4])).sum(axis=1)  # deformed
-    # sigma = P F^T / J, so that its integral over the deformed volume is that of P F^T over the reference one.
-    kirchhoff = p @ np.swapaxes(f, -1, -2)
-    mean = (kirchhoff * points.volumes[..., None, None]).sum(axis=1) / volume[:, None, None]
-    energy = (stage.elasticity.energy(strain) * points.volumes).sum(axis=1) / points.volumes.sum(axis=1)
-    return Stresses(np.stack([mean[:, 0, 0], mean[:, 1, 1], 0.5 * (mean[:, 0, 1] + mean[:, 1, 0])], axis=1), energy)
+    p, f = (a[..., :4].reshape(*a.shape[:-1], 2, 2) for a in (piola, strain + IDENTITY))
+    j = np.linalg.det(f) * (1.0 + strain[..., 4])
+    sigma = p @ np.swapaxes(f, -1, -2) / j[..., None, None]
+    cauchy = np.stack([sigma[..., 0, 0], sigma[..., 1, 1], 0.5 * (sigma[..., 0, 1] + sigma[..., 1, 0])], axis=-1)
+    return Stresses(cauchy, stage.elasticity.energy(strain))
 
 
 def loaded(stage: Stage) -> dict[str, Array]:
-    """Displacement of the points and stresses of the elements in the present state; nan where they are lost."""
+    """Displacement of the points and mean stresses of the elements in the present state; nan where they are lost."""
     body, cells = stage.body, stage.body.cells
     displacement, stress = np.full((len(cells.points), 2), np.nan), np.full((len(cells.fate), 3), np.nan)
     moved = stage.problem.state.vec.FV().NumPy()[stage.problem.part(DISPLACEMENT)].reshape(2, -1)
     displacement[body.vertices] = moved[:, : len(body.vertices)].T
-    stress[body.numbers] = stresses(stage).cauchy
+    volumes = stage.problem.points.volumes
+    stress[body.numbers] = (stresses(stage).cauchy * volumes[..., None]).sum(axis=1) / volumes.sum(axis=1)[:, None]
     return {"displacement [mm]": displacement, "stress xx, yy, xy [MPa]": stress}
 
 
 def exhaustion(state: State, repeats: int) -> Array:
-    """How much of what it bears each element of the section is under after so many such cycles; 0 where it is lost."""
+    """How much of what it bears each element of the layers is under after so many such cycles; 0 where it is lost."""
     stage, cells = state.stage, state.stage.body.cells
     criterion = stage.scene.deactivation.damage
     out = np.zeros(len(cells.fate))
-    out[stage.body.numbers] = criterion.exhaustion(stresses(stage))
+    out[stage.body.numbers] = _used(stage)
     if criterion.accumulates:
         out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
-    return np.where(cells.living & cells.quads, out, 0.0)
+    return np.where(cells.living & cells.layers, out, 0.0)
+
+
+def _used(stage: Stage) -> Array:
+    """How much of what it bears each living element is under where it bears most, in the mesh's order.
+
+    By its mean, an element would bear less the larger it is: what tears begins at the surface.
+    """
+    return stage.scene.deactivation.damage.exhaustion(stresses(stage)).max(axis=1)
 
 
 def begin(state: State) -> None:
@@ -128,8 +134,8 @@ def tire(state: State, repeats: int, *, last: bool) -> None:
     deactivation = state.stage.scene.deactivation
     if deactivation is None or deactivation.damage is None or not deactivation.damage.accumulates:
         return
-    living = state.stage.body.cells.living
-    state.strained[living] = np.maximum(state.strained[living], deactivation.damage.exhaustion(stresses(state.stage)))
+    mine = state.stage.body.numbers
+    state.strained[mine] = np.maximum(state.strained[mine], _used(state.stage))
     if last:
         state.fatigue = state.fatigue + repeats * state.strained
         state.strained = np.zeros_like(state.strained)
@@ -143,7 +149,10 @@ def lose(state: State, cells: Cells, dead: Mask, fate: Fate) -> None:
 
 def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
     """The section without some elements, their areas in the book of the state."""
-    left = cells.without(dead, fate)
+    scene = state.stage.scene
+    touching = {edge for contact in scene.contacts for edge in contact.edges}
+    bonded = tuple(edge for support in scene.supports for edge in support.edges if edge not in touching)
+    left = cells.without(dead, fate, bonded)
     areas = cells.areas()
     newly = cells.living & ~left.living
     for cause in (Fate.TORN, Fate.DISTORTED, Fate.LOOSE):
@@ -192,7 +201,7 @@ def _reached(cells: Cells) -> NDArray[np.intp]:
     chord = np.roll(place, -1, axis=0) - np.roll(place, 1, axis=0)
     normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
     left = ((cells.points[beneath] - place) * normal).sum(axis=1)
-    near = THINNEST * np.sqrt(np.median(cells.made[cells.quads]))
+    near = THINNEST * np.sqrt(np.median(cells.made[cells.layers]))
     # A column along the outline, in a wall, is not worn; one that points outwards has been passed.
     across = np.abs((cells.inward() * normal).sum(axis=1)) > STEEPEST
     return rim[(beneath >= 0) & across & (left < near)]

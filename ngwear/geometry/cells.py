@@ -14,7 +14,7 @@ from ngwear.geometry.contour import Array, Contour
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
-HOLE = "hole"
+HOLE, EXPOSED = "hole", "exposed"
 CUT = 0.05  # of the section: how much may come loose at once before it counts as cut in two
 
 
@@ -48,6 +48,8 @@ class Cells:
         Next point inwards on each point's column; -1 for none.
     made : array, shape (m,)
         Least corner Jacobian of each element as it was made, see ``least_jacobian`` [mm²].
+    layers : array of bool, shape (m,)
+        Which elements were made as quadrilaterals, in the layers that may be lost.
     provenance : str
         Where the outline comes from.
     """
@@ -59,6 +61,7 @@ class Cells:
     names: tuple[str, ...]
     below: Index
     made: Array
+    layers: Mask
     provenance: str = ""
 
     @property
@@ -157,10 +160,11 @@ class Cells:
         real = sides[:, 0] != sides[:, 1]
         return sides[real], owner[real]
 
-    def without(self, dead: Mask, fate: Fate) -> Cells:
+    def without(self, dead: Mask, fate: Fate, bonded: tuple[str, ...] = ()) -> Cells:
         """The section after some elements are lost, and with them what then hangs on nothing or on a single point.
 
-        An exposed side takes the name of the nearest one of the outline before.
+        An exposed side takes the name of the nearest one of the outline before; one that faces away counts as farther.
+        The names of ``bonded`` edges are not passed on: what held them holds nothing behind them.
 
         Raises
         ------
@@ -175,7 +179,7 @@ class Cells:
             if not loose.any():
                 loose = new._hanging()
             if not loose.any():
-                return new._with_rim(self)
+                return new._with_rim(self, bonded)
             fates = new.fate.copy()
             fates[loose] = Fate.LOOSE
             new = replace(new, fate=fates)
@@ -232,16 +236,19 @@ class Cells:
         size = len(self.points)
         return sides[~np.isin(sides[:, 0] * size + sides[:, 1], sides[:, 1] * size + sides[:, 0])]
 
-    def _with_rim(self, before: Cells) -> Cells:
-        from scipy.spatial import cKDTree
-
+    def _with_rim(self, before: Cells, bonded: tuple[str, ...]) -> Cells:
         rim = _around(self._loops()[0], before.rim)
+        pairs = list(zip(rim, np.roll(rim, -1), strict=True))
         old = {(a, b): name for a, b, name in zip(before.rim, np.roll(before.rim, -1), before.names, strict=True)}
-        middles = 0.5 * (before.points[before.rim] + before.points[np.roll(before.rim, -1)])
-        mine = 0.5 * (self.points[rim] + self.points[np.roll(rim, -1)])
-        _, nearest = cKDTree(middles).query(mine)
-        pairs = zip(rim, np.roll(rim, -1), nearest, strict=True)
-        return replace(self, rim=rim, names=tuple(old.get((a, b), before.names[k]) for a, b, k in pairs))
+        places, ahead = _middles(before.points, before.rim)
+        mine, along = _middles(self.points, rim)
+        # Of sides as near, one that faces the same way: else a new corner of a layer would be named after its flank.
+        off = np.linalg.norm(mine[:, None] - places, axis=2) * (2.0 - along @ ahead.T)
+        off[:, np.isin(before.names, bonded)] = np.inf
+        nearest = [
+            before.names[k] if np.isfinite(row[k]) else EXPOSED for row, k in zip(off, off.argmin(1), strict=True)
+        ]
+        return replace(self, rim=rim, names=tuple(map(old.get, pairs, nearest)))
 
     def _loops(self) -> list[Index]:
         """Closed chains of boundary points, the outline first, then holes."""
@@ -273,10 +280,18 @@ def outlined(
 ) -> Cells:
     """Cells whose outline has the given name for each of its sides."""
     nothing, fate = np.zeros(0, np.intp), np.zeros(len(corners), np.int8)
-    bare = Cells(points, corners, fate, nothing, (), below, np.zeros(len(corners)), provenance)
+    layers = corners[:, 3] >= 0
+    bare = Cells(points, corners, fate, nothing, (), below, np.zeros(len(corners)), layers, provenance)
     rim = bare._loops()[0]
     named = tuple(names[pair] for pair in zip(rim, np.roll(rim, -1), strict=True))
     return replace(bare, rim=rim, names=named, made=bare.least_jacobians())
+
+
+def _middles(points: Array, rim: Index) -> tuple[Array, Array]:
+    """Middle and direction of each segment of an outline, shapes (k, 2)."""
+    start, end = points[rim], points[np.roll(rim, -1)]
+    ahead = end - start
+    return 0.5 * (start + end), ahead / np.linalg.norm(ahead, axis=1)[:, None]
 
 
 def _around(loop: Index, before: Index) -> Index:

@@ -15,13 +15,13 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stresses:
-    """Means over the deformed volume of each element.
+    """What rubber bears, at any number of places.
 
     Parameters
     ----------
-    cauchy : array, shape (m, 3)
+    cauchy : array, shape (..., 3)
         Cauchy stresses xx, yy, xy [MPa].
-    energy : array, shape (m,)
+    energy : array, shape (...)
         Strain energy per reference volume [mJ/mm³].
     """
 
@@ -30,13 +30,13 @@ class Stresses:
 
     @property
     def tensile(self) -> Array:
-        """The larger normal stress along x or y [MPa], shape (m,)."""
-        return self.cauchy[:, :2].max(axis=1)
+        """The larger normal stress along x or y [MPa], shape (...)."""
+        return self.cauchy[..., :2].max(axis=-1)
 
     @property
     def principal(self) -> Array:
-        """The larger principal stress in the plane [MPa], shape (m,)."""
-        xx, yy, xy = self.cauchy.T
+        """The larger principal stress in the plane [MPa], shape (...)."""
+        xx, yy, xy = np.moveaxis(self.cauchy, -1, 0)
         return 0.5 * (xx + yy) + np.hypot(0.5 * (xx - yy), xy)
 
 
@@ -54,7 +54,7 @@ class Criterion(abc.ABC):
 
     @abc.abstractmethod
     def exhaustion(self, stresses: Stresses) -> Array:
-        """How much of what it bears each element is under, shape (m,) [-]; torn from 1 on.
+        """How much of what it bears the rubber is under at each place, shape (...) [-]; torn from 1 on.
 
         Of a criterion that ``accumulates``: what one cycle uses up.
         """

@@ -1,0 +1,191 @@
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ngwear import deactivation
+from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
+from ngwear.errors import SceneError
+from ngwear.geometry.cells import Fate
+from ngwear.materials import NeoHooke
+from ngwear.program import Program
+from ngwear.scene import SupportSpec
+from ngwear.stepper import Stepper
+from ngwear.verify.cell_blocks import grid, held, on_edge, pull
+from ngwear.verify.no_loss import scene
+from ngwear.wear.damage import (
+    CRITERIA,
+    Fatigue,
+    MaximumPrincipalStress,
+    StrainEnergyDensity,
+    Stresses,
+    TensileNormalStress,
+    criterion,
+)
+
+# Cauchy stresses xx, yy, xy [MPa] and the principal stress by hand.
+STATES = {
+    "pulled along x": ((3.0, 1.0, 0.0), 3.0),
+    "pulled along y": ((-2.0, 5.0, 0.0), 5.0),
+    "sheared": ((0.0, 0.0, 2.0), 2.0),
+    "pulled and sheared": ((4.0, -2.0, 4.0), 6.0),
+    "pressed": ((-1.0, -3.0, 0.0), -1.0),
+    "pressed and sheared": ((-5.0, -5.0, -3.0), -2.0),
+}
+RUBBER = NeoHooke(shear=1.5, bulk_modulus=20.0)
+
+
+@pytest.mark.parametrize(("cauchy", "principal"), STATES.values(), ids=STATES)
+def test_criteria_by_hand(cauchy, principal):
+    stresses = Stresses(np.array([cauchy]), np.array([0.3]))
+    assert TensileNormalStress(critical=2.0).exhaustion(stresses) == pytest.approx([max(cauchy[:2]) / 2])
+    assert MaximumPrincipalStress(critical=4.0).exhaustion(stresses) == pytest.approx([principal / 4])
+    assert StrainEnergyDensity(critical=0.2).exhaustion(stresses) == pytest.approx([1.5])
+    used = Fatigue(critical=8.0, exponent=3.0).exhaustion(stresses)
+    assert used == pytest.approx([max(principal / 8, 0.0) ** 3])
+
+
+def test_each_criterion_has_its_name_and_only_fatigue_adds_up():
+    assert {name: kind.accumulates for name, kind in CRITERIA.items()} == {
+        "tensile normal stress": False,
+        "maximum principal stress": False,
+        "strain energy density": False,
+        "fatigue": True,
+    }
+    assert criterion("fatigue", critical=3.0, exponent=2.0) == Fatigue(critical=3.0, exponent=2.0)
+    assert criterion("maximum principal stress", critical=3.0) == MaximumPrincipalStress(critical=3.0)
+
+
+def test_unknown_criteria_and_impossible_values_are_refused():
+    with pytest.raises(SceneError, match=r"deactivation\.damage\.criterion = 'hoop stress': must be one of \['tensile"):
+        criterion("hoop stress", critical=1.0)
+    with pytest.raises(SceneError, match=r"deactivation\.damage\.critical = 0\.0: must be greater than 0"):
+        StrainEnergyDensity(critical=0.0)
+    with pytest.raises(SceneError, match=r"deactivation\.damage\.exponent = -1\.0: must be greater than 0"):
+        Fatigue(critical=1.0, exponent=-1.0)
+
+
+def block(damage, cells=None):
+    cells = grid(np.linspace(0, 3, 7), np.linspace(0, 2, 5)) if cells is None else cells
+    return held(cells, RUBBER, (SupportSpec(edges=("bottom", "top")),), damage)
+
+
+def test_stresses_of_a_homogeneous_deformation_are_cauchys():
+    state = block(MaximumPrincipalStress(critical=1.0))
+    stage = state.stage
+    f = np.array([[1.2, 0.3], [0.1, 0.95]])
+    j = np.linalg.det(f)
+    stage.body.set_nodal(stage.problem.fields[DISPLACEMENT], stage.body.node_places() @ (f - np.eye(2)).T)
+    stage.problem.fields[VOLUMETRIC_STRESS].vec[:] = stage.elasticity.split[1] * (j - 1)
+    found = deactivation.stresses(stage)
+    b, i1 = f @ f.T, np.sum(f * f) + 1
+    by_hand = 1.5 * j ** (-5 / 3) * (b - i1 / 3 * np.eye(2)) + 20.0 * (j - 1) * np.eye(2)
+    expected = [by_hand[0, 0], by_hand[1, 1], by_hand[0, 1]]
+    np.testing.assert_allclose(found.cauchy, np.tile(expected, (24, 1)), rtol=1e-10)
+    energy = 0.75 * (j ** (-2 / 3) * i1 - 3) + 10.0 * (j - 1) ** 2
+    np.testing.assert_allclose(found.energy, energy, rtol=1e-10)
+    highest = np.linalg.eigvalsh(by_hand)[-1]
+    np.testing.assert_allclose(deactivation.exhaustion(state, 1), highest, rtol=1e-10)
+
+
+def merged():
+    """A block in whose middle a surface point has been merged: two of its elements have become triangles."""
+    cells = grid(np.linspace(0, 3, 7), np.linspace(0, 2, 5))
+    top = np.flatnonzero((cells.points == (1.5, 2.0)).all(axis=1))
+    points = cells.points[cells.rim].copy()
+    points[cells.rim == top, 1] = 1.5
+    return cells.moved(points).merged(top)
+
+
+def test_what_tires_an_element_is_its_own_stress():
+    """Also where elements have become triangles, which the mesh has last."""
+    damage = Fatigue(critical=5.0, exponent=2.0)
+    state = block(damage, merged())
+    cells, body = state.stage.body.cells, state.stage.body
+    assert not (np.sort(body.numbers) == body.numbers).all(), "otherwise nothing is tested"
+    pull(state, "top", 0.1)
+    state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
+    deactivation.tire(state, 1, last=False)
+    stress = deactivation.loaded(state.stage)["stress xx, yy, xy [MPa]"]
+    np.testing.assert_allclose(state.strained, damage.exhaustion(Stresses(stress, np.zeros(len(stress)))), rtol=1e-12)
+    assert not state.fatigue.any()
+    deactivation.tire(state, 3, last=True)
+    np.testing.assert_allclose(
+        state.fatigue, 3 * damage.exhaustion(Stresses(stress, np.zeros(len(stress)))), rtol=1e-12
+    )
+    assert not state.strained.any()
+
+
+def test_triangles_are_not_torn():
+    state = block(MaximumPrincipalStress(critical=1e-3), merged())
+    pull(state, "top", 0.1)
+    used, cells = deactivation.exhaustion(state, 1), state.stage.body.cells
+    assert (used[~cells.quads] == 0).all()
+    assert (used[cells.quads] > 0).all()
+
+
+def test_nothing_is_torn_below_the_criterion_and_the_state_is_left_alone():
+    state = block(MaximumPrincipalStress(critical=1e3))
+    pull(state, "top", 0.1)
+    stage, vector = state.stage, state.phases[0].vector.copy()
+    assert not deactivation.tear(state, state.contour, 1)
+    assert state.stage is stage
+    np.testing.assert_array_equal(state.phases[0].vector, vector)
+    assert state.ledger.lost[Fate.TORN] == 0.0
+
+
+def test_what_is_left_keeps_its_state():
+    """Displacements of every vertex that is left, and they are near to the equilibrium without the lost element."""
+    state = block(MaximumPrincipalStress(critical=1e3))
+    pull(state, "top", 0.1)
+
+    def displaced():
+        stage = state.stage
+        u = state.phases[0].vector[stage.problem.part(DISPLACEMENT)].reshape(2, -1)[:, : stage.body.mesh.nv].T
+        return dict(zip(stage.body.vertices.tolist(), u.tolist(), strict=True))
+
+    before = displaced()
+    dead = np.arange(24) == 12  # at the left side, in the third row
+    deactivation.lose(state, state.stage.body.now, dead, Fate.TORN)
+    after = displaced()
+    assert len(after) == len(before)
+    assert all(after[point] == before[point] for point in after)
+    assert state.ledger.lost[Fate.TORN] == pytest.approx(0.25)
+    assert len(on_edge(state.stage.body, "top")) == 7
+
+
+def tired(strokes, **options):
+    """The small block under its cylinder, hardly worn, and what each cycle has left of it."""
+    base = scene("implicit", damage=Fatigue(exponent=2.0, **options))
+    (spec,) = base.contacts
+    contacts = (replace(spec, specific_wear_rate=1e-12),)
+    base = replace(base, contacts=contacts, program=Program(cycle=base.program.cycle, strokes=strokes))
+    stepper = Stepper(base)
+    state, found = stepper.start(), []
+    while not stepper.finished(state):
+        state = stepper.advance(state)
+        stresses = [report.loaded["stress xx, yy, xy [MPa]"] for report in state.reports[-2:]]
+        found.append((state.fatigue.copy(), stresses, state.cells))
+    return found
+
+
+def test_fatigue_adds_up_over_cycles_by_the_highest_stress_of_each():
+    cycles = tired(6, critical=2.0)
+    for number, (fatigue, stresses, cells) in enumerate(cycles, start=1):
+        each = [Fatigue(critical=2.0, exponent=2.0).exhaustion(Stresses(s, np.zeros(len(s)))) for s in stresses]
+        assert (each[0] > 1.1 * each[1]).any(), "forth and back strain different elements"
+        assert (each[1] > 1.1 * each[0]).any()
+        np.testing.assert_allclose(fatigue, number * np.maximum(*each), rtol=1e-6, atol=1e-9)
+        assert cells.living.all()
+
+
+def test_fatigue_tears_in_the_cycle_in_which_life_is_used_up():
+    fatigue, _, cells = tired(2, critical=2.0)[0]
+    used = fatigue[cells.quads].max()
+    critical = 2.0 * math.sqrt(used / 0.4)  # now 0.4 a cycle: 0.8 after two, torn in the third
+    cycles = tired(6, critical=critical)
+    torn = [np.flatnonzero(after.fate == Fate.TORN) for _, _, after in cycles]
+    assert cycles[1][0][cells.quads].max() == pytest.approx(0.8, rel=1e-6)
+    assert [len(those) > 0 for those in torn] == [False, False, True]
+    assert np.argmax(np.where(cells.quads, fatigue, 0.0)) in torn[2]

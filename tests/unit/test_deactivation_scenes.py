@@ -1,0 +1,224 @@
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from conftest import REMEMBERS
+
+from ngwear import deactivation
+from ngwear.errors import GeometryError, SceneError
+from ngwear.geometry.cells import Fate
+from ngwear.materials import NeoHooke
+from ngwear.program import Program
+from ngwear.run import GAVE_UP, run
+from ngwear.scene import SupportSpec
+from ngwear.scenefile import read_scene
+from ngwear.verify.cell_blocks import grid, held
+from ngwear.verify.material_book import torn_scene
+from ngwear.verify.no_loss import scene
+from ngwear.wear.damage import Fatigue, MaximumPrincipalStress, TensileNormalStress
+from ngwear.wear.deactivate import Deactivation, DistortionFilter
+
+NOT_REPEATABLE = {"wall time [s]", "CPU time [s]", "peak memory [MB]"}
+TABLE = """
+[deactivation]
+depth = 0.3
+distortion = { corner_cosine = 0.95 }
+damage = { criterion = "fatigue", critical = 5.0, exponent = 3.0 }
+"""
+
+
+@pytest.fixture
+def read(tmp_path, write_sheet):
+    """``read((old, new), ...)``: the sheet with a table [deactivation], pieces of the text replaced."""
+
+    def read(*changes):
+        file = write_sheet(tmp_path, ('step = "each"', 'step = "each"\nremesh = "never"\n' + TABLE), *changes)
+        return read_scene(file)
+
+    return read
+
+
+def test_a_scene_file_says_what_is_lost_and_how(read):
+    assert read().deactivation == Deactivation(
+        depth=0.3,
+        distortion=DistortionFilter(corner_cosine=0.95),
+        damage=Fatigue(critical=5.0, exponent=3.0),
+    )
+
+
+def test_what_the_table_leaves_out_does_not_happen(read):
+    bare = read(*[(line + "\n", "") for line in TABLE.splitlines()[3:]])
+    assert bare.deactivation == Deactivation(depth=0.3)
+    damage = 'damage = { criterion = "fatigue", critical = 5.0, exponent = 3.0 }'
+    plain = read((damage, 'damage = { criterion = "tensile normal stress", critical = 4 }'))
+    assert plain.deactivation.damage == TensileNormalStress(critical=4.0)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "told"),
+    [
+        ("depth = 0.3\n", "", "deactivation.depth = None: is missing"),
+        ("depth = 0.3", 'depth = "thick"', "deactivation.depth = 'thick': must be a number"),
+        ("depth = 0.3", "depth = -0.3", "deactivation.depth = -0.3: must be greater than 0 mm"),
+        (
+            "depth = 0.3",
+            "depth = 0.05",
+            "deactivation.depth = 0.05: must be at least one element thick (accuracy.patch",
+        ),
+        ("depth = 0.3", "depth = 0.3\nlayers = 2", "deactivation.layers = 2: unknown key; known here: ['damage', 'dep"),
+        (
+            "corner_cosine = 0.95",
+            "corner_cosine = 1.0",
+            "deactivation.distortion.corner_cosine = 1.0: must lie between",
+        ),
+        ("{ corner_cosine = 0.95 }", "0.95", "deactivation.distortion = 0.95: must be a table"),
+        (
+            "corner_cosine",
+            "cosine",
+            "deactivation.distortion.cosine = 0.95: unknown key; known here: ['corner_cosine']",
+        ),
+        ('"fatigue"', '"hoop"', "deactivation.damage.criterion = 'hoop': must be one of ['tensile normal stress', "),
+        (
+            'criterion = "fatigue", ',
+            "",
+            "deactivation.damage.criterion = None: must be one of ['tensile normal stress'",
+        ),
+        ('"fatigue"', "3", "deactivation.damage.criterion = 3: must be one of ['tensile normal stress', "),
+        (", exponent = 3.0", "", "deactivation.damage.exponent = None: is missing"),
+        ('"fatigue"', '"strain energy density"', "deactivation.damage.exponent = 3.0: unknown key; known here: ['crit"),
+        ("critical = 5.0", "critical = 0", "deactivation.damage.critical = 0.0: must be greater than 0"),
+        ("critical = 5.0", "critical = nan", "deactivation.damage.critical = nan: must be a finite number"),
+        (
+            'remesh = "never"',
+            'remesh = "due"',
+            "wear.remesh = 'due': must be 'never' in a scene that deactivates elements",
+        ),
+        ("1.0e-3", "0.0", "contact.specific_wear_rate = 0.0: at least one contact must wear: below its edges"),
+    ],
+)
+def test_a_mistake_in_the_file_is_told_with_place_value_and_remedy(read, old, new, told):
+    with pytest.raises(SceneError, match=re.escape(told)):
+        read((old, new))
+
+
+def test_damage_that_is_no_table_is_told_by_example(read):
+    with pytest.raises(SceneError, match=r"deactivation\.damage = 19\.0: must be a table, such as \{ criterion = "):
+        read(('{ criterion = "fatigue", critical = 5.0, exponent = 3.0 }', "19.0"))
+
+
+def test_a_deactivation_that_is_no_table_is_refused(read, tmp_path, write_sheet):
+    with pytest.raises(SceneError, match=r"deactivation = True: must be a table \[deactivation\]"):
+        read_scene(write_sheet(tmp_path, ("[scene]", "deactivation = true\n[scene]")))
+
+
+def test_rubber_with_memory_is_refused(read):
+    with pytest.raises(SceneError, match=r"material\.prony = .*rubber without memory only: leave one of both out"):
+        read(*REMEMBERS)
+
+
+def test_rubber_that_would_tear_while_it_is_fitted_is_refused_with_the_place():
+    weak = scene("implicit", damage=MaximumPrincipalStress(critical=0.01))
+    with pytest.raises(SceneError, match=r"deactivation\.damage\.critical = 0\.01: the part would tear") as told:
+        run(weak, figures=False)
+    x, y = map(float, re.search(r"at \(([\d.]+), ([\d.]+)\) mm", str(told.value)).groups())
+    assert 1.7 < y < 2.0, "in the layers"
+    assert 2.0 < abs(x - 2.0) + 2.0 < 3.5
+    assert "maximum principal stress" in str(told.value)
+    reached = float(re.search(r"reaches ([\d.]+) of what it bears", str(told.value)).group(1))
+    just = scene("implicit", damage=MaximumPrincipalStress(critical=0.0102 * reached))
+    assert run(replace(just, program=Program(cycle=just.program.cycle, strokes=0)), figures=False).status == "completed"
+
+
+BLOCK = grid(np.linspace(0, 3, 7), np.linspace(0, 2, 5))
+
+
+def test_a_part_torn_off_its_support_is_reported():
+    damage = MaximumPrincipalStress(critical=1.0)
+    state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), damage)
+    with pytest.raises(GeometryError, match=r"held or loaded by nothing: nothing of the edges \['bottom'\] is left"):
+        deactivation.lose(state, BLOCK, np.arange(24) < 6, Fate.TORN)
+
+
+def test_a_support_of_which_something_is_left_holds_only_there():
+    damage = MaximumPrincipalStress(critical=1.0)
+    state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), damage)
+    deactivation.lose(state, BLOCK, np.arange(24) < 4, Fate.TORN)
+    contour = state.contour
+    on = contour.on(("bottom",))
+    assert contour.lengths[on].sum() == pytest.approx(1.0)
+    assert (contour.points[on, 1] == 0).all()
+
+
+@pytest.mark.parametrize(
+    ("tears", "told"),
+    [
+        (lambda x, y: np.abs(x - 1.5) < 0.4, "after stroke 2: the section is cut in two"),
+        (lambda x, y: y < 0.6, "after stroke 2: what is left of the section is held or loaded by nothing"),
+    ],
+    ids=["cut in two", "torn off"],
+)
+def test_a_run_that_loses_too_much_gives_up_with_the_state_before(monkeypatch, tears, told):
+    """In the second stroke of its second cycle."""
+    real = deactivation.exhaustion
+
+    def exhaustion(state, repeats):
+        cells = state.stage.body.cells
+        corners = np.where(cells.corners < 0, cells.corners[:, :1], cells.corners)
+        x, y = cells.points[corners].mean(axis=1).T
+        return np.where(cells.living & tears(x, y), 2.0, 0.0) if state.strokes == 3 else real(state, repeats)
+
+    monkeypatch.setattr(deactivation, "exhaustion", exhaustion)
+    result = run(scene("implicit", damage=MaximumPrincipalStress(critical=9.0)), throw=False, figures=False)
+    assert result.status == GAVE_UP
+    assert result.message.startswith(told)
+    assert result.state.strokes == 2
+    assert result.state.cells.living.all()
+    assert result.state.ledger.removed == pytest.approx(result.state.ledger.worn, rel=1e-9)
+    assert set(result.state.ledger.lost.values()) == {0.0}
+    assert result.summary["area lost by tearing [mm^2]"] == 0.0
+
+
+def close(first, second):
+    for row, other in zip(first, second, strict=True):
+        assert row.keys() == other.keys()
+        for name in row.keys() - NOT_REPEATABLE:
+            if isinstance(row[name], float):
+                assert row[name] == pytest.approx(other[name], rel=1e-9, abs=1e-12), name
+            else:
+                assert row[name] == other[name], name
+
+
+@pytest.mark.parametrize("stop", [0, 3])
+def test_interrupted_and_resumed_it_ends_as_uninterrupted(tmp_path, stop):
+    """Before and after elements are lost by every cause."""
+    torn = torn_scene()
+    whole = run(torn, figures=False)
+    assert min(whole.state.ledger.lost[fate] for fate in (Fate.TORN, Fate.DISTORTED, Fate.LOOSE)) > 0
+
+    def interrupt(state):
+        if state.strokes >= stop:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(torn, out=tmp_path / "out", figures=False, on_step=interrupt)
+    parts = run(torn, out=tmp_path / "out", resume=True, figures=False)
+    close(parts.recorder.rows, whole.recorder.rows)
+    np.testing.assert_array_equal(parts.state.cells.fate, whole.state.cells.fate)
+    np.testing.assert_allclose(parts.state.contour.points, whole.state.contour.points, rtol=0, atol=1e-9)
+
+
+def test_resumed_fatigue_goes_on_where_it_was(tmp_path):
+    tiring = scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0))
+    tiring = replace(tiring, program=replace(tiring.program, strokes=4))
+    whole = run(tiring, figures=False)
+
+    def interrupt(state):
+        if state.strokes >= 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(tiring, out=tmp_path / "out", figures=False, on_step=interrupt)
+    parts = run(tiring, out=tmp_path / "out", resume=True, figures=False)
+    assert whole.state.fatigue.max() > 0
+    np.testing.assert_allclose(parts.state.fatigue, whole.state.fatigue, rtol=1e-9)
