@@ -180,6 +180,8 @@ def history_figure(result: ResultFile) -> Figure:
     """Depth with its error band, peak pressure and contact width over strokes."""
     series, kinds = result.series, result.kinds
     stroke = series["stroke [-]"]
+    # Further strokes that were looked at where the outline was kept did not wear: their contact is another.
+    worn = (series["strokes in one solve [-]"] > 0) | (stroke == 0)
     figure, axes = new_figure(3, (1.3, 1, 1), size=(8, 9))
     depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
     axes[0].plot(stroke, depth, color="k", lw=1.2, label="maximum")
@@ -192,7 +194,7 @@ def history_figure(result: ResultFile) -> Figure:
     for panel, ending in ((axes[1], "peak pressure [MPa]"), (axes[2], "contact width [mm]")):
         for column in [c for c in series if c.endswith(ending)]:
             for colour, kind in zip(COLOURS, kinds, strict=False):
-                mine = series["kind [-]"] == kind
+                mine = worn & (series["kind [-]"] == kind)
                 panel.plot(
                     stroke[mine],
                     series[column][mine],
