@@ -20,7 +20,8 @@ Array = NDArray[np.float64]
 
 STRESS = "stress xx, yy, xy [MPa]"
 PRINCIPAL = (MaximumPrincipalStress.name, Fatigue.name)
-COMMON = 99.5  # per cent of the elements shown whose stresses the colours tell apart
+NEAR = 2.0  # times the highest pull: a critical stress beyond that would leave the section pale
+LEAST = 1e-3  # MPa
 BEHIND = 0.06  # of the window's width: how much of the rubber behind the face is shown besides
 ROD = 0.4  # of that: how much of what lies before the face
 
@@ -43,8 +44,11 @@ def stress_figure(result: ResultFile) -> Figure:
     seen = np.vstack([shape for shapes, _, inside in fields for shape, i in zip(shapes, inside, strict=True) if i])
     low, high = np.maximum(low, seen.min(axis=0) - ROD * room), np.minimum(high, seen.max(axis=0) + ROD * room)
     critical = critical_stress(result)
-    largest = max(np.nanpercentile(np.abs(stress[inside]), COMMON) for _, stress, inside in fields)
-    scale = Normalize(-max(largest, critical or 0.0), max(largest, critical or 0.0))
+    # Rubber tears where it is pulled: the colours tell pulls apart, however much it is squeezed elsewhere.
+    largest = max(float(np.nanmax(stress[inside], initial=LEAST)) for _, stress, inside in fields)
+    marked = critical is not None and critical < NEAR * largest
+    largest = max(largest, critical) if marked else largest
+    scale = Normalize(-largest, largest)
     height = min(max(8.2 * (high - low)[1] / (high - low)[0], 0.6), 4.0)
     heights = (height,) * len(shown)
     figure, axes = new_figure(len(shown), heights, size=(10.5, sum(heights) + 0.3 * len(shown) + 1.0))
@@ -56,10 +60,11 @@ def stress_figure(result: ResultFile) -> Figure:
         panel.set_title(f"{when(result, snapshot)}: {snapshot.kind}", loc="left", fontsize=10)
         panel.set_ylabel("y [mm]")
     axes[-1].set_xlabel("x [mm]")
-    bar = figure.colorbar(drawn, ax=axes, extend="both", shrink=0.8, pad=0.02, aspect=30)
+    bar = figure.colorbar(drawn, ax=axes, extend="min", shrink=0.8, pad=0.02, aspect=30)
     name = "larger principal stress" if uses_principal(result) else "larger normal stress along x or y"
-    bar.set_label(f"{name} [MPa]; pull is positive")
-    if critical is not None:
+    tears = "" if critical is None or marked else f", tears at {critical:.3g}"
+    bar.set_label(f"{name} [MPa]: pull is positive{tears}")
+    if marked:
         bar.ax.axhline(critical, color="k", lw=2)
         bar.ax.text(-0.4, critical, f"tears at {critical:.3g} ", ha="right", va="center", fontsize=9, rotation=90)
     figure.suptitle(f"{result.scene}: stress that tears, on the loaded section", fontsize=12)
@@ -69,7 +74,8 @@ def stress_figure(result: ResultFile) -> Figure:
 def directions(result: ResultFile) -> list[str]:
     """One kind of stroke for each direction in which friction pulls: strokes of the same direction look alike."""
     first = {}
-    pulls = [c for name in result.snapshots[0].profiles for c in result.series if c == f"{name} friction force x [N/mm]"]
+    forces = tuple(f"{name} friction force x [N" for name in result.snapshots[0].profiles)  # N, or N/mm
+    pulls = [c for c in result.series if c.startswith(forces)]
     for kind in result.kinds:
         row = next(i for i, s in enumerate(result.snapshots) if s.kind == kind)
         way = np.sign(sum(float(result.series[c][row]) for c in pulls)) if pulls else kind

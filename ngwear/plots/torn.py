@@ -32,7 +32,7 @@ RIDGE = 16  # elements' sides: how wide the window on a ridge is
 WIDEST, LEAST = 9.2, 0.6  # inches: of the panels of a figure, and the least height of one
 
 
-def profiles_figure(result: ResultFile) -> Figure:
+def face_figure(result: ResultFile) -> Figure:
     """The section's face at each kept stroke without what it has lost, and the depth that a profilometer would see."""
     kept, window = sections(result), worn_face(result)
     wide, high = window[1] - window[0]
