@@ -20,6 +20,7 @@ Box = tuple[Array, Array]
 
 TIMES = ((3 * 3600.0, 3600.0, "h"), (300.0, 60.0, "min"), (0.0, 1.0, "s"))  # runs from how long on, in which unit
 ROD = "0.75"
+MARGIN = 0.025  # of the worn face's length, around it
 
 
 def sections(result: ResultFile) -> list[Snapshot]:
@@ -71,7 +72,7 @@ def lost(first: Snapshot, now: Snapshot, fate: Fate) -> list[Array]:
 
 
 def box(points: Array, margin: float | Array) -> Box:
-    """Lower left and upper right corner around points, with a margin [mm], the same or one for x and one for y."""
+    """Lower left and upper right corner around points; the margin [mm] is the same, or one for x and one for y."""
     return points.min(axis=0) - margin, points.max(axis=0) + margin
 
 
@@ -89,8 +90,7 @@ def worn_face(result: ResultFile) -> Box:
     if kept:
         gone = kept[-1].elements["fate"] != Fate.LIVING
         face = np.vstack([face, *polygons(kept[0].elements["points [mm]"], kept[0].elements["corners"][gone])])
-    sizes = np.ptp(face, axis=0)
-    return box(face, np.maximum(0.03 * sizes, np.minimum(0.25 * sizes, 0.03 * sizes.max())))
+    return box(face, MARGIN * float(np.ptp(face, axis=0).max()))
 
 
 def show(axes: Axes, window: Box, *, frame: bool = True) -> None:

@@ -47,7 +47,7 @@ def stress_figure(result: ResultFile) -> Figure:
     # Rubber tears where it is pulled: the colours tell pulls apart, however much it is squeezed elsewhere.
     largest = max(float(np.nanmax(stress[inside], initial=LEAST)) for _, stress, inside in fields)
     marked = critical is not None and critical < NEAR * largest
-    largest = max(largest, critical) if marked else largest
+    largest = max(largest, 1.05 * critical) if marked else largest
     scale = Normalize(-largest, largest)
     height = min(max(8.2 * (high - low)[1] / (high - low)[0], 0.6), 4.0)
     heights = (height,) * len(shown)
@@ -62,11 +62,12 @@ def stress_figure(result: ResultFile) -> Figure:
     axes[-1].set_xlabel("x [mm]")
     bar = figure.colorbar(drawn, ax=axes, extend="min", shrink=0.8, pad=0.02, aspect=30)
     name = "larger principal stress" if uses_principal(result) else "larger normal stress along x or y"
-    tears = "" if critical is None or marked else f", tears at {critical:.3g}"
-    bar.set_label(f"{name} [MPa]: pull is positive{tears}")
+    tears = "tears in one cycle at" if critical and result.damage[0] == Fatigue.name else "tears at"
+    beyond = "" if critical is None or marked else f"; {tears} {critical:.3g}"
+    bar.set_label(f"{name} [MPa]: pull is positive{beyond}")
     if marked:
         bar.ax.axhline(critical, color="k", lw=2)
-        bar.ax.text(-0.4, critical, f"tears at {critical:.3g} ", ha="right", va="center", fontsize=9, rotation=90)
+        bar.ax.text(-0.4, critical, f"{tears} {critical:.3g}", ha="right", va="center", fontsize=9, rotation=90)
     figure.suptitle(f"{result.scene}: stress that tears, on the loaded section", fontsize=12)
     return figure
 

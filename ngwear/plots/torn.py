@@ -37,14 +37,14 @@ def face_figure(result: ResultFile) -> Figure:
     kept, window = sections(result), worn_face(result)
     wide, high = window[1] - window[0]
     height = min(max(WIDEST * high / wide, LEAST), 4.0)
-    heights = (*[height] * len(kept), 2.6)
-    figure, axes = new_figure(len(heights), heights, size=(10, sum(heights) + 0.3 * len(heights) + 0.9))
+    heights = (*[height] * len(kept), 2.8)
+    figure, axes = new_figure(len(heights), heights, size=(10, sum(heights) + 0.3 * len(heights) + 1.2))
     from matplotlib.collections import PolyCollection
 
     unworn = np.vstack([kept[0].outline, kept[0].outline[:1]])
     for panel, snapshot in zip(axes, kept, strict=False):
         shapes, _ = living(snapshot)
-        panel.add_collection(PolyCollection(shapes, facecolor=RUBBER, edgecolor="face", lw=0.3, label="rubber"))
+        panel.add_collection(PolyCollection(shapes, facecolor=RUBBER, edgecolor="face", lw=0.6, label="rubber"))
         closed = np.vstack([snapshot.outline, snapshot.outline[:1]])
         panel.plot(*closed.T, color=COLOURS[0], lw=1.0)
         panel.plot(*unworn.T, color="0.4", lw=0.7, ls=":")
@@ -72,7 +72,7 @@ def _draw_depths(axes: Axes, result: ResultFile, kept: list[Snapshot]) -> None:
     axes.set_ylabel("worn depth [µm]")
     axes.set_xlabel("x [mm]" if axis == "x" else f"{axis} [mm]")
     if len(kept) > 1:
-        axes.legend(ncols=len(kept) - 1, loc="lower left")
+        axes.legend(ncols=min(len(kept) - 1, 5), loc="upper center", bbox_to_anchor=(0.5, -0.2), frameon=False)
 
 
 def _shades(n: int) -> list[tuple[float, float, float, float]]:
@@ -108,8 +108,9 @@ def ridge_figure(result: ResultFile) -> Figure:
         panel.locator_params(nbins=4)
     for panel in axes[:, 0]:
         panel.set_ylabel("y [mm]")
-    figure.legend(legend.values(), legend.keys(), loc="outside lower center", ncols=len(legend), frameon=False)
-    figure.suptitle(f"{result.scene}: elements of the ridge that has lost most, unloaded", fontsize=12)
+    names = [name for name in ("rubber", *(row[1] for row in LOST), "worn away") if name in legend]
+    figure.legend([legend[name] for name in names], names, loc="outside lower center", ncols=len(names), frameon=False)
+    figure.suptitle(f"{result.scene}: elements where most are lost, unloaded", fontsize=12)
     return figure
 
 
