@@ -29,7 +29,7 @@ LOST = (
 )
 STATIONS = 2001
 RIDGE = 16  # elements' sides: how wide the window on a ridge is
-WIDEST, LEAST = 9.2, 0.6  # inches: of the panels of a figure, and the least height of one
+WIDEST, LEAST = 9.6, 0.6  # inches: of the panels of a figure, and the least height of one
 
 
 def face_figure(result: ResultFile) -> Figure:

@@ -16,6 +16,7 @@ from ngwear.plots.sections import box, draw_planes, living, sections, show
 from ngwear.plots.stress import stress_figure
 from ngwear.plots.style import COLOURS, new_figure
 from ngwear.plots.torn import face_figure, ridge_figure
+from ngwear.profiles.worn_edge import STATIONS, seen, view
 from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
@@ -245,9 +246,19 @@ def worn_edge(snapshot: Snapshot) -> Array:
     return edge[np.argsort(edge[:, 0])]
 
 
+def _from_outside(result: ResultFile, snapshot: Snapshot) -> Array:
+    """The worn edge; as it shows from outside, if elements that it has lost may have left overhangs."""
+    edge = worn_edge(snapshot)
+    if not sections(result):
+        return edge
+    direction, outward, _ = view(result.outline, np.isin(result.edges, result.worn_edges))
+    x = np.linspace(edge[0, 0], edge[-1, 0], STATIONS)
+    return np.column_stack([x, outward[1] * seen(snapshot.outline @ direction, snapshot.outline @ outward, x)])
+
+
 def asymmetry_figure(result: ResultFile) -> Figure:
     """The worn edge at the end, its mirror image, and how far they are apart."""
-    worn, unworn = worn_edge(result.snapshots[-1]), worn_edge(result.snapshots[0])
+    worn, unworn = (_from_outside(result, result.snapshots[k]) for k in (-1, 0))
     middle = 0.5 * (result.outline[:, 0].min() + result.outline[:, 0].max())
     x = np.linspace(worn[0, 0], worn[-1, 0], 4001)
     height, before = np.interp(x, *worn.T), np.interp(x, *unworn.T)
