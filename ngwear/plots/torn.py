@@ -37,7 +37,9 @@ def face_figure(result: ResultFile) -> Figure:
     kept, window = sections(result), worn_face(result)
     wide, high = window[1] - window[0]
     height = min(max(WIDEST * high / wide, LEAST), 4.0)
-    heights = (*[height] * len(kept), 2.8)
+    place, depths, axis = _depths(result, kept)
+    shallow = _shallow(depths[-1])
+    heights = (*[height] * len(kept), *[2.8 if shallow is None else 2.2] * (1 if shallow is None else 2))
     figure, axes = new_figure(len(heights), heights, size=(10, sum(heights) + 0.3 * len(heights) + 1.2))
     from matplotlib.collections import PolyCollection
 
@@ -51,28 +53,43 @@ def face_figure(result: ResultFile) -> Figure:
         show(panel, window)
         panel.set_title(when(result, snapshot), loc="left", fontsize=10)
         panel.set_ylabel("y [mm]")
-    _draw_depths(axes[-1], result, kept)
-    axes[-1].set_xlim(window[0][0], window[1][0])
+    for panel in axes[len(kept) :]:
+        for colour, snapshot, depth in zip(_shades(len(kept)), kept, depths, strict=True):
+            if snapshot.stroke > 0:
+                panel.plot(place, 1e3 * depth, color=colour, lw=1.2, label=when(result, snapshot))
+        panel.set_ylim(bottom=0)
+        panel.invert_yaxis()
+        panel.set_ylabel("worn depth [µm]")
+    if shallow is not None:
+        axes[-2].set_ylim(1e3 * shallow, 0)
+        axes[-2].set_title("worn depth, cut off where elements are lost", loc="left", fontsize=10)
+        axes[-1].set_title("the whole depth", loc="left", fontsize=10)
+    if axis == "x":
+        axes[-1].set_xlim(window[0][0], window[1][0])
+    axes[-1].set_xlabel(f"{axis} [mm]")
+    if len(kept) > 1:
+        axes[-1].legend(ncols=min(len(kept) - 1, 5), loc="upper center", bbox_to_anchor=(0.5, -0.2), frameon=False)
     figure.suptitle(f"{result.scene}: worn face, unloaded (dotted: new)", fontsize=12)
     return figure
 
 
-def _draw_depths(axes: Axes, result: ResultFile, kept: list[Snapshot]) -> None:
-    """How far the face that shows from outside lies below the new one."""
+def _depths(result: ResultFile, kept: list[Snapshot]) -> tuple[Array, list[Array], str]:
+    """Places along the face, how far what shows from outside lies below the new face there, and the axis' name."""
     on = np.isin(result.edges, result.worn_edges)
     direction, outward, axis = view(result.outline, on)
     along = result.outline[on | np.roll(on, 1)] @ direction
     place = np.linspace(along.min(), along.max(), STATIONS)
     heights = [seen(s.outline @ direction, s.outline @ outward, place) for s in kept]
-    for colour, snapshot, height in zip(_shades(len(kept)), kept, heights, strict=True):
-        if snapshot.stroke > 0:
-            axes.plot(place, 1e3 * (heights[0] - height), color=colour, lw=1.2, label=when(result, snapshot))
-    axes.set_ylim(bottom=0)
-    axes.invert_yaxis()
-    axes.set_ylabel("worn depth [µm]")
-    axes.set_xlabel("x [mm]" if axis == "x" else f"{axis} [mm]")
-    if len(kept) > 1:
-        axes.legend(ncols=min(len(kept) - 1, 5), loc="upper center", bbox_to_anchor=(0.5, -0.2), frameon=False)
+    return place, [heights[0] - height for height in heights], axis
+
+
+def _shallow(depth: Array) -> float | None:
+    """Up to where to show the wear beside narrow gaps that are far deeper [mm]; None where there are none."""
+    worn = depth[depth > 1e-3 * np.nanmax(depth, initial=0.0)]
+    if not len(worn):
+        return None
+    most = 1.6 * float(np.percentile(worn, 90))
+    return most if worn.max() > 2 * most else None
 
 
 def _shades(n: int) -> list[tuple[float, float, float, float]]:

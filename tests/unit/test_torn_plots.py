@@ -143,6 +143,15 @@ def test_faces_leave_out_what_is_lost(result):
     assert high[1] > 2 * SIDE, "the square lost behind the face is shown"
 
 
+def test_narrow_gaps_do_not_hide_the_wear(result):
+    """A gap of one square's width, half a millimetre deep: the depth is drawn twice, once for the wear beside it."""
+    gap = [(1.0, WORN), (1.0, 0.5), (1.1, 0.5), (1.1, WORN)]
+    torn = [replace(s, outline=np.vstack([s.outline[:10], gap, s.outline[12:]])) for s in result.snapshots[-2:]]
+    *_, beside, whole = face_figure(replace(result, snapshots=[*result.snapshots[:-2], *torn])).axes
+    assert whole.get_ylim()[0] > 500
+    assert 1e3 * WORN < beside.get_ylim()[0] < 50
+
+
 def test_stress_is_that_of_the_criterion(result):
     figure = stress_figure(result)
     assert directions(result) == ["out", "back"]
