@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear import __version__
-from ngwear.errors import NgwearError
+from ngwear.errors import NgwearError, ResultError
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
 
@@ -35,7 +35,9 @@ def _parser() -> argparse.ArgumentParser:
     explain.set_defaults(do=_explain)
     plot = commands.add_parser("plot", help="draw the figures of a run again")
     plot.add_argument("folder", type=Path, metavar="DIR")
-    plot.add_argument("--against", type=Path, metavar="DIR", help="draw it beside another run of the same outline")
+    instead = plot.add_mutually_exclusive_group()
+    instead.add_argument("--against", type=Path, metavar="DIR", help="draw it beside another run of the same outline")
+    instead.add_argument("--animate", action="store_true", help="also draw evolution.gif: outline and pressure moving")
     plot.set_defaults(do=_plot)
     compare = commands.add_parser("compare", help="lay a measured profile over a run's worn edge; fit the wear rate")
     compare.add_argument("folder", type=Path, metavar="DIR")
@@ -146,9 +148,16 @@ def _plot(options: argparse.Namespace) -> int:
     from ngwear.plots.pin import is_pin_run, plot_pin
     from ngwear.plots.wear import plot
 
-    draw = plot_pin if is_pin_run(options.folder) else plot
+    pin = is_pin_run(options.folder)
+    if pin and options.animate:
+        raise ResultError(f"{options.folder} is a run of a pin: its outline does not wear, there is nothing to animate")
+    draw = plot_pin if pin else plot
     for path in [compare(options.folder, options.against)] if options.against else draw(options.folder):
         print(path)
+    if options.animate:
+        from ngwear.plots.animation import animate
+
+        print(animate(options.folder, progress=sys.stderr.isatty()))
     return OK
 
 

@@ -74,6 +74,10 @@ class Program:
     @property
     def duration(self) -> float:
         """Time that all strokes take [s]."""
-        full, part = divmod(self.strokes, len(self.cycle))
+        return self.elapsed(self.strokes)
+
+    def elapsed(self, strokes: int) -> float:
+        """Time after so many strokes [s]; infinity if one of them has no speed."""
+        full, part = divmod(strokes, len(self.cycle))
         times = [stroke.duration for stroke in self.cycle]
         return (full * sum(times) if full else 0.0) + sum(times[:part])

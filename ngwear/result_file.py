@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Outline and contact profiles at one solved stroke, as read from ``result.h5``."""
+    """Outline and contact profiles at one solved stroke, as read from ``result.h5``.
+
+    ``time`` [s] is infinite where a stroke has no speed; ``elements`` is empty but at the strokes that keep them.
+    """
 
     stroke: int
     kind: str
@@ -24,6 +28,7 @@ class Snapshot:
     profiles: dict[str, dict[str, Array]]
     mesh: dict[str, Array]
     elements: dict[str, Array]
+    time: float = math.inf
 
 
 @dataclass(frozen=True)
@@ -45,6 +50,8 @@ class ResultFile:
         Whether the rubber has memory.
     drifts : bool
         Whether a law of friction or wear changes with the sliding distance.
+    damage : tuple or None
+        Name of the criterion that tears elements and its critical value; None without one.
     series : dict of array
         Columns as in ``series.csv``; row i belongs to snapshot i.
     snapshots : list of Snapshot
@@ -57,6 +64,7 @@ class ResultFile:
     worn_edges: tuple[str, ...]
     remembers: bool
     drifts: bool
+    damage: tuple[str, float] | None
     series: dict[str, Array]
     snapshots: list[Snapshot]
 
@@ -97,6 +105,7 @@ def read_result(folder: Path | str) -> ResultFile:
                         {k: v for k, v in parts.items() if k not in ("mesh", "elements")},
                         parts.get("mesh", {}),
                         parts.get("elements", {}),
+                        float(group.attrs.get("time [s]", math.inf)),
                     )
                 )
             rate = "specific wear rate [mm^2/N]"
@@ -111,6 +120,11 @@ def read_result(folder: Path | str) -> ResultFile:
                 ),
                 remembers=bool(h5.attrs.get("memory", False)),
                 drifts=bool(h5.attrs.get("laws over distance", False)),
+                damage=(
+                    (str(h5.attrs["damage criterion"]), float(h5.attrs["critical damage"]))
+                    if "damage criterion" in h5.attrs
+                    else None
+                ),
                 series=get_series(h5),
                 snapshots=snapshots,
             )

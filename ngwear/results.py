@@ -305,6 +305,9 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         h5.attrs["laws over distance"] = any(
             c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
         )
+        damage = None if scene.deactivation is None else scene.deactivation.damage
+        if damage is not None:
+            h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
         contacts = h5.create_group("contacts")
         for spec in scene.contacts:
             group = contacts.create_group(spec.name)
@@ -318,6 +321,7 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         for number, snapshot in enumerate(recorder.snapshots):
             group = strokes.create_group(f"{number:05d}")
             group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
+            group.attrs["time [s]"] = scene.program.elapsed(snapshot.stroke)
             group["outline [mm]"] = snapshot.outline
             for contact, profile in snapshot.profiles.items():
                 for name, values in profile.items():

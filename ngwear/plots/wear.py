@@ -9,9 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
+from ngwear.plots.book import book_figure, has_book
 from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.laws import has_laws, law_figure
+from ngwear.plots.sections import box, draw_planes, living, sections, show
+from ngwear.plots.stress import stress_figure
 from ngwear.plots.style import COLOURS, new_figure
+from ngwear.plots.torn import face_figure, ridge_figure
+from ngwear.profiles.worn_edge import STATIONS, seen, view
 from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
@@ -19,6 +24,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+
+MARGIN = 0.1  # mm, around the part
 
 
 def plot(folder: Path | str) -> list[Path]:
@@ -41,6 +48,11 @@ def plot(folder: Path | str) -> list[Path]:
         figures["counter_surface"] = counter_figure
     if is_mirrored(result.outline):
         figures["asymmetry"] = asymmetry_figure
+    if sections(result):
+        figures |= {"torn_profiles": face_figure, "ridge_evolution": ridge_figure}
+        figures["stress_field"] = stress_figure
+    if has_book(result):
+        figures["material_book"] = book_figure
     written = []
     with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         for name, draw in figures.items():
@@ -68,22 +80,20 @@ def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
 
 def mesh_figure(result: ResultFile) -> Figure:
     """Deformed mesh at the first stroke of the cycle, over its contact pressure."""
+    from matplotlib.collections import PolyCollection
+
     first = result.snapshots[0]
     points = first.mesh.get("points [mm]", result.outline)
-    wide, high = np.ptp(points, axis=0)
-    upper_share = 4 * min(max(high / wide, 0.2), 0.8)
-    figure, (upper, lower) = new_figure(2, (upper_share, 1), size=(8, 2.14 * (upper_share + 1)))
-    if first.mesh:
+    wide, high = np.ptp(points, axis=0) + 2 * MARGIN
+    upper_share = 4 * min(max(high / wide, 0.2), 1.1)
+    figure, (upper, lower) = new_figure(2, (upper_share, 1), size=(8, 2.0 * (upper_share + 1) + 0.5))
+    if first.elements:
+        shapes, _ = living(first, deformed=True)
+        upper.add_collection(PolyCollection(shapes, facecolor="none", edgecolor=COLOURS[0], lw=0.3))
+    elif first.mesh:
         upper.triplot(points[:, 0], points[:, 1], first.mesh["triangles"], lw=0.3, color=COLOURS[0])
-        low = points.min(axis=0)
-        upper.set_xlim(low[0] - 0.1, points[:, 0].max() + 0.1)
-    for profile in first.profiles.values():
-        place, gap = profile["place [mm]"], profile["gap [mm]"]
-        level = (place[:, 1] - gap)[np.argmin(gap)]
-        if np.ptp(place[:, 1] - gap) < 1e-9 * max(abs(level), 1.0):
-            upper.axhspan(level - 0.12, level, color="0.75")
-    upper.set_aspect("equal", adjustable="box")
-    upper.grid(visible=False)
+    draw_planes(upper, first, 0.12)
+    show(upper, box(points, MARGIN))
     upper.set_ylabel("y [mm]")
     upper.set_title(f"{result.scene}: first {first.kind} stroke")
     _pressure(lower, first, color=COLOURS[1], lw=1.2)
@@ -180,6 +190,8 @@ def history_figure(result: ResultFile) -> Figure:
     """Depth with its error band, peak pressure and contact width over strokes."""
     series, kinds = result.series, result.kinds
     stroke = series["stroke [-]"]
+    # Further strokes that were looked at where the outline was kept did not wear: their contact is another.
+    worn = (series["strokes in one solve [-]"] > 0) | (stroke == 0)
     figure, axes = new_figure(3, (1.3, 1, 1), size=(8, 9))
     depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
     axes[0].plot(stroke, depth, color="k", lw=1.2, label="maximum")
@@ -192,7 +204,7 @@ def history_figure(result: ResultFile) -> Figure:
     for panel, ending in ((axes[1], "peak pressure [MPa]"), (axes[2], "contact width [mm]")):
         for column in [c for c in series if c.endswith(ending)]:
             for colour, kind in zip(COLOURS, kinds, strict=False):
-                mine = series["kind [-]"] == kind
+                mine = worn & (series["kind [-]"] == kind)
                 panel.plot(
                     stroke[mine],
                     series[column][mine],
@@ -234,9 +246,19 @@ def worn_edge(snapshot: Snapshot) -> Array:
     return edge[np.argsort(edge[:, 0])]
 
 
+def _from_outside(result: ResultFile, snapshot: Snapshot) -> Array:
+    """The worn edge; as it shows from outside, if elements that it has lost may have left overhangs."""
+    edge = worn_edge(snapshot)
+    if not sections(result):
+        return edge
+    direction, outward, _ = view(result.outline, np.isin(result.edges, result.worn_edges))
+    x = np.linspace(edge[0, 0], edge[-1, 0], STATIONS)
+    return np.column_stack([x, outward[1] * seen(snapshot.outline @ direction, snapshot.outline @ outward, x)])
+
+
 def asymmetry_figure(result: ResultFile) -> Figure:
     """The worn edge at the end, its mirror image, and how far they are apart."""
-    worn, unworn = worn_edge(result.snapshots[-1]), worn_edge(result.snapshots[0])
+    worn, unworn = (_from_outside(result, result.snapshots[k]) for k in (-1, 0))
     middle = 0.5 * (result.outline[:, 0].min() + result.outline[:, 0].max())
     x = np.linspace(worn[0, 0], worn[-1, 0], 4001)
     height, before = np.interp(x, *worn.T), np.interp(x, *unworn.T)

@@ -108,13 +108,13 @@ def read_worn_edge(folder: Path | str, *, edges: Sequence[str] = ()) -> WornEdge
     if not result.wear_rates or not result.snapshots or result.snapshots[-1].stroke == 0:
         raise ResultError(f"{folder}: nothing has worn in this run, or its wear rates were not kept: run it again")
     on = _on(result, edges or result.worn_edges)
-    direction, outward, axis = _view(result.outline, on)
+    direction, outward, axis = view(result.outline, on)
     ends = np.concatenate([result.outline[on], np.roll(result.outline, -1, axis=0)[on]]) @ direction
     place = np.linspace(ends.min(), ends.max(), STATIONS)
     kept = {s.stroke: (d, s) for d, s in zip(result.series["sliding distance [mm]"], result.snapshots, strict=True)}
-    heights = np.array([_seen(s.outline @ direction, s.outline @ outward, place) for _, s in kept.values()])
-    own = _seen(result.outline @ direction, result.outline @ outward, place, on)
-    hidden = _seen(result.outline @ direction, result.outline @ outward, place) - own > HIDDEN * np.ptp(ends)
+    heights = np.array([seen(s.outline @ direction, s.outline @ outward, place) for _, s in kept.values()])
+    own = seen(result.outline @ direction, result.outline @ outward, place, on)
+    hidden = seen(result.outline @ direction, result.outline @ outward, place) - own > HIDDEN * np.ptp(ends)
     if hidden.sum() > HIDDEN * np.isfinite(own).sum():
         raise SceneError("edges", list(edges or result.worn_edges), "another part of the outline lies in front of them")
     whole = np.isfinite(heights).all(axis=0)
@@ -138,7 +138,7 @@ def _on(result: ResultFile, edges: Sequence[str]) -> NDArray[np.bool_]:
     return np.array([name in edges for name in result.edges])
 
 
-def _view(outline: Array, on: NDArray[np.bool_]) -> tuple[Array, Array, str]:
+def view(outline: Array, on: NDArray[np.bool_]) -> tuple[Array, Array, str]:
     """Unit vectors along the edges and out of the material, and the axis' name."""
     x, y = (np.roll(outline, -1, axis=0) - outline)[on].sum(axis=0)
     angle = np.arctan2(-x, y)  # of the outward normal: the outline runs counter-clockwise
@@ -151,9 +151,9 @@ def _view(outline: Array, on: NDArray[np.bool_]) -> tuple[Array, Array, str]:
     return direction, outward, axis
 
 
-def _seen(along: Array, height: Array, place: Array, on: NDArray[np.bool_] | None = None) -> Array:
+def seen(along: Array, height: Array, place: Array, on: NDArray[np.bool_] | None = None) -> Array:
     """Outermost height of a closed polygon, or of some of its segments, over each place; NaN where there is none."""
-    seen = np.full(len(place), -np.inf)
+    top = np.full(len(place), -np.inf)
     ends, tops = np.roll(along, -1), np.roll(height, -1)
     low = np.searchsorted(place, np.minimum(along, ends) - 1e-12)
     high = np.searchsorted(place, np.maximum(along, ends) + 1e-12)
@@ -161,8 +161,8 @@ def _seen(along: Array, height: Array, place: Array, on: NDArray[np.bool_] | Non
         part = slice(low[i], high[i])
         run = ends[i] - along[i]
         if abs(run) > 1e-12:
-            top = height[i] + np.clip((place[part] - along[i]) / run, 0, 1) * (tops[i] - height[i])
+            here = height[i] + np.clip((place[part] - along[i]) / run, 0, 1) * (tops[i] - height[i])
         else:
-            top = max(height[i], tops[i])
-        seen[part] = np.maximum(seen[part], top)
-    return np.where(np.isfinite(seen), seen, np.nan)
+            here = max(height[i], tops[i])
+        top[part] = np.maximum(top[part], here)
+    return np.where(np.isfinite(top), top, np.nan)

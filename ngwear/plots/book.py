@@ -1,0 +1,45 @@
+"""Figure of the book of lost material: area and elements by cause over the sliding distance."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ngwear.plots.style import new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from ngwear.result_file import ResultFile
+
+IN_ALL = "area lost in all [mm^2]"
+CAUSES = {"wear": "#9db7cc", "tearing": "#222222", "distortion": "#d98324", "coming loose": "#7f5fa8"}
+
+
+def has_book(result: ResultFile) -> bool:
+    """Whether a run has booked what it has lost by cause."""
+    return IN_ALL in result.series
+
+
+def book_figure(result: ResultFile) -> Figure:
+    """Area lost by each cause, one upon the other, and the number of elements lost."""
+    series = result.series
+    metres = series["sliding distance [mm]"] / 1e3
+    figure, (area, count) = new_figure(2, (1.6, 1.0), size=(8, 7))
+    lost = {cause: series[f"area lost by {cause} [mm^2]"] for cause in CAUSES}
+    area.stackplot(metres, *lost.values(), colors=CAUSES.values(), labels=[f"by {cause}" for cause in CAUSES])
+    area.plot(metres, series[IN_ALL], color="k", lw=0.8, ls="--", label="in all")
+    area.set_ylabel("area lost from the section [mm²]")
+    area.set_ylim(bottom=min(0.0, area.dataLim.ymin))
+    area.set_xlim(metres.min(), max(metres.max(), 1e-9))
+    handles, labels = area.get_legend_handles_labels()
+    area.legend(handles[::-1], labels[::-1], loc="upper left")  # in the order in which they lie
+    area.set_title(f"{result.scene}: material lost, by cause")
+    for cause, colour in CAUSES.items():
+        column = "elements worn away [-]" if cause == "wear" else f"elements lost by {cause} [-]"
+        count.step(metres, series[column], where="post", color=colour, lw=1.5, label=f"by {cause}")
+    count.set_ylabel("elements lost [-]")
+    count.set_ylim(bottom=0)
+    count.yaxis.get_major_locator().set_params(integer=True)
+    count.set_xlabel("sliding distance [m]")
+    count.legend(loc="upper left")
+    return figure
