@@ -23,6 +23,7 @@ from ngwear.wear.damage import (
     TensileNormalStress,
     criterion,
 )
+from ngwear.wear.deactivate import DistortionFilter
 
 # Cauchy stresses xx, yy, xy [MPa] and the principal stress by hand.
 STATES = {
@@ -203,3 +204,12 @@ def test_fatigue_tears_in_the_cycle_in_which_life_is_used_up():
     assert cycles[1][0][cells.quads].max() == pytest.approx(0.8, rel=1e-6)
     assert [len(those) > 0 for those in torn] == [False, False, True]
     assert np.argmax(np.where(cells.quads, fatigue, 0.0)) in torn[2]
+
+
+def test_the_filter_finds_living_elements_whose_corners_are_too_sharp():
+    cells = merged()
+    cells = replace(cells, fate=np.where(np.arange(24) == 21, Fate.TORN, cells.fate).astype(np.int8))
+    sharp = cells.corner_cosines()
+    assert np.flatnonzero(sharp > 0.7).tolist() == [20, 21]
+    assert np.flatnonzero(DistortionFilter(corner_cosine=0.7).finds(cells)).tolist() == [20]
+    assert not DistortionFilter(corner_cosine=float(sharp.max())).finds(cells).any()
