@@ -109,8 +109,8 @@ def run() -> list[Check]:
     add(
         "greatest depth, so that there is something to compare [mm]",
         2.0 - found[middle & (found[:, 1] > 1.0), 1].min(),
-        0.03,
-        0.5,
+        0.045,
+        0.1,
     )
     add("outline against that by hand, over the size [-]", np.abs(found - hand).max() / 4.0, 0.0, 1e-9)
     law = WEAR_RATE * 0.5 * 10.0 * STROKES

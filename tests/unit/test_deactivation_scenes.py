@@ -6,8 +6,9 @@ import pytest
 from conftest import REMEMBERS
 
 from ngwear import deactivation
-from ngwear.errors import GeometryError, SceneError
+from ngwear.errors import GeometryError, MeshError, SceneError
 from ngwear.geometry.cells import Fate
+from ngwear.geometry.contour import polygon_area
 from ngwear.materials import NeoHooke
 from ngwear.program import Program
 from ngwear.run import GAVE_UP, run
@@ -16,8 +17,9 @@ from ngwear.scenefile import read_scene
 from ngwear.verify.cell_blocks import grid, held
 from ngwear.verify.material_book import torn_scene
 from ngwear.verify.no_loss import scene
-from ngwear.wear.damage import Fatigue, MaximumPrincipalStress, TensileNormalStress
+from ngwear.wear.damage import Fatigue, MaximumPrincipalStress, Stresses, TensileNormalStress
 from ngwear.wear.deactivate import Deactivation, DistortionFilter
+from ngwear.wearing import Wearing
 
 NOT_REPEATABLE = {"wall time [s]", "CPU time [s]", "peak memory [MB]"}
 TABLE = """
@@ -130,6 +132,7 @@ def test_rubber_that_would_tear_while_it_is_fitted_is_refused_with_the_place():
     assert run(replace(just, program=Program(cycle=just.program.cycle, strokes=0)), figures=False).status == "completed"
 
 
+NOTHING = MaximumPrincipalStress(critical=1e9)
 BLOCK = grid(np.linspace(0, 3, 7), np.linspace(0, 2, 5))
 
 
@@ -159,24 +162,46 @@ def test_a_support_of_which_something_is_left_holds_only_there():
     ids=["cut in two", "torn off"],
 )
 def test_a_run_that_loses_too_much_gives_up_with_the_state_before(monkeypatch, tears, told):
-    """In the second stroke of its second cycle."""
+    """In the second stroke of its second cycle; its first one has torn something, too."""
     real = deactivation.exhaustion
 
     def exhaustion(state, repeats):
         cells = state.stage.body.cells
         corners = np.where(cells.corners < 0, cells.corners[:, :1], cells.corners)
         x, y = cells.points[corners].mean(axis=1).T
-        return np.where(cells.living & tears(x, y), 2.0, 0.0) if state.strokes == 3 else real(state, repeats)
+        if state.strokes < 2:
+            return real(state, repeats)
+        torn = tears(x, y) if state.strokes == 3 else np.hypot(x - 0.55, y - 1.95) < 0.06
+        seen.append(state.strokes)
+        return np.where(cells.living & torn, 2.0, 0.0)
 
+    seen = []
     monkeypatch.setattr(deactivation, "exhaustion", exhaustion)
     result = run(scene("implicit", damage=MaximumPrincipalStress(critical=9.0)), throw=False, figures=False)
     assert result.status == GAVE_UP
+    assert seen == [2, 2, 3], "torn, solved again, then too much"
     assert result.message.startswith(told)
     assert result.state.strokes == 2
     assert result.state.cells.living.all()
     assert result.state.ledger.removed == pytest.approx(result.state.ledger.worn, rel=1e-9)
     assert set(result.state.ledger.lost.values()) == {0.0}
     assert result.summary["area lost by tearing [mm^2]"] == 0.0
+
+
+@pytest.mark.parametrize("sinks", [0.2, 0.45])
+def test_what_a_wall_gains_or_loses_as_its_ends_are_merged_is_in_the_book(sinks):
+    """Surface points beside a pit sink along its wall; beneath them there is its floor."""
+    pit = BLOCK.without(np.arange(24) == 20, Fate.TORN)
+    state = held(pit, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), NOTHING)
+    outline, points = state.contour, state.contour.points.copy()
+    points[(points[:, 1] == 2.0) & np.isin(points[:, 0], (1.0, 1.5)), 1] -= sinks
+    deactivation.follow(state, outline, points)
+    lost = sum(state.ledger.lost.values())
+    merged = len(state.contour) < len(outline)
+    assert merged == (sinks > 0.4)
+    assert pit.area - state.cells.area == pytest.approx(outline.area - polygon_area(points) + lost, rel=1e-12)
+    assert (lost != 0) == merged
+    assert state.contour.area == pytest.approx(state.cells.area, rel=1e-12)
 
 
 def close(first, second):
@@ -222,3 +247,23 @@ def test_resumed_fatigue_goes_on_where_it_was(tmp_path):
     parts = run(tiring, out=tmp_path / "out", resume=True, figures=False)
     assert whole.state.fatigue.max() > 0
     np.testing.assert_allclose(parts.state.fatigue, whole.state.fatigue, rtol=1e-9)
+
+
+@pytest.mark.parametrize("stroke", [3, 4])
+def test_a_cycle_that_is_taken_back_has_tired_nothing(monkeypatch, stroke):
+    tiring = scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0))
+    real = Wearing.take
+
+    def take(self):
+        if self.state.strokes == stroke:
+            raise MeshError("too much")
+        return real(self)
+
+    monkeypatch.setattr(Wearing, "take", take)
+    result = run(tiring, throw=False, figures=False)
+    assert result.status == GAVE_UP
+    assert result.state.strokes == 2
+    last = [report.loaded["stress xx, yy, xy [MPa]"] for report in result.state.reports]
+    each = [tiring.deactivation.damage.exhaustion(Stresses(s, np.zeros(len(s)))) for s in last]
+    np.testing.assert_allclose(result.state.fatigue, np.maximum(*each), rtol=1e-9)
+    assert not result.state.strained.any()
