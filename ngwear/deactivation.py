@@ -44,16 +44,21 @@ def element_body(scene: Scene) -> ElementBody:
 
 
 def stresses(stage: Stage) -> Stresses:
-    """Stresses in the present state at the integration points of the living elements, in the mesh's order."""
+    """Mean stresses of the living elements in the present state, in the mesh's order.
+
+    The highest ones grow without bound where an element beside has been lost: one loss would go through the section.
+    """
     problem = stage.problem
-    problem.points.follow()
-    strain = problem.points.strain(problem.state.vec.FV().NumPy())
+    points = problem.points
+    points.follow()
+    strain = points.strain(problem.state.vec.FV().NumPy())
     piola, _ = stage.elasticity.response(strain, tangent=False)
     p, f = (a[..., :4].reshape(*a.shape[:-1], 2, 2) for a in (piola, strain + IDENTITY))
-    j = np.linalg.det(f) * (1.0 + strain[..., 4])
-    sigma = p @ np.swapaxes(f, -1, -2) / j[..., None, None]
-    cauchy = np.stack([sigma[..., 0, 0], sigma[..., 1, 1], 0.5 * (sigma[..., 0, 1] + sigma[..., 1, 0])], axis=-1)
-    return Stresses(cauchy, stage.elasticity.energy(strain))
+    volume = (points.volumes * np.linalg.det(f) * (1.0 + strain[..., 4])).sum(axis=1)  # deformed
+    # sigma = P F^T / J, so that its integral over the deformed volume is that of P F^T over the reference one.
+    mean = ((p @ np.swapaxes(f, -1, -2)) * points.volumes[..., None, None]).sum(axis=1) / volume[:, None, None]
+    energy = (stage.elasticity.energy(strain) * points.volumes).sum(axis=1) / points.volumes.sum(axis=1)
+    return Stresses(np.stack([mean[:, 0, 0], mean[:, 1, 1], 0.5 * (mean[:, 0, 1] + mean[:, 1, 0])], axis=1), energy)
 
 
 def loaded(stage: Stage) -> dict[str, Array]:
@@ -62,8 +67,7 @@ def loaded(stage: Stage) -> dict[str, Array]:
     displacement, stress = np.full((len(cells.points), 2), np.nan), np.full((len(cells.fate), 3), np.nan)
     moved = stage.problem.state.vec.FV().NumPy()[stage.problem.part(DISPLACEMENT)].reshape(2, -1)
     displacement[body.vertices] = moved[:, : len(body.vertices)].T
-    volumes = stage.problem.points.volumes
-    stress[body.numbers] = (stresses(stage).cauchy * volumes[..., None]).sum(axis=1) / volumes.sum(axis=1)[:, None]
+    stress[body.numbers] = stresses(stage).cauchy
     return {"displacement [mm]": displacement, "stress xx, yy, xy [MPa]": stress}
 
 
@@ -72,18 +76,10 @@ def exhaustion(state: State, repeats: int) -> Array:
     stage, cells = state.stage, state.stage.body.cells
     criterion = stage.scene.deactivation.damage
     out = np.zeros(len(cells.fate))
-    out[stage.body.numbers] = _used(stage)
+    out[stage.body.numbers] = criterion.exhaustion(stresses(stage))
     if criterion.accumulates:
         out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
     return np.where(cells.living & cells.layers, out, 0.0)
-
-
-def _used(stage: Stage) -> Array:
-    """How much of what it bears each living element is under where it bears most, in the mesh's order.
-
-    By its mean, an element would bear less the larger it is: what tears begins at the surface.
-    """
-    return stage.scene.deactivation.damage.exhaustion(stresses(stage)).max(axis=1)
 
 
 def begin(state: State) -> None:
@@ -135,7 +131,7 @@ def tire(state: State, repeats: int, *, last: bool) -> None:
     if deactivation is None or deactivation.damage is None or not deactivation.damage.accumulates:
         return
     mine = state.stage.body.numbers
-    state.strained[mine] = np.maximum(state.strained[mine], _used(state.stage))
+    state.strained[mine] = np.maximum(state.strained[mine], deactivation.damage.exhaustion(stresses(state.stage)))
     if last:
         state.fatigue = state.fatigue + repeats * state.strained
         state.strained = np.zeros_like(state.strained)

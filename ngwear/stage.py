@@ -60,9 +60,12 @@ class Stage:
         self.frictions: dict[str, Friction] = {}
         for spec in scene.contacts:
             if spec.friction_law is not None:
-                kind = StickSlip if scene.may_stick(spec) else FullSliding
-                contact, speed = self.contacts[spec.name], scene.program.cycle[0].speed
-                self.frictions[spec.name] = kind(contact, spec.friction_law, speed=speed)
+                contact, law, speed = self.contacts[spec.name], spec.friction_law, scene.program.cycle[0].speed
+                if scene.may_stick(spec):
+                    self.frictions[spec.name] = StickSlip(contact, law, speed=speed)
+                else:
+                    stepped = scene.deactivation is not None
+                    self.frictions[spec.name] = FullSliding(contact, law, speed=speed, stepped=stepped)
             if spec.wears and spec.wear_law is not None:
                 mu = self.frictions[spec.name].coefficient if spec.name in self.frictions else None
                 wear = PressureWear(spec.wear_law, modulus=modulus, coefficient=mu)

@@ -85,12 +85,15 @@ class FullSliding(Friction):
     The load ``"NAME slip"`` in [-1, 1] is the direction in which the surface moves along its tangent (the
     surface's normal turned clockwise); values between ramp a reversal. Neglects the stick phase after a
     reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric. On an outline, what
-    ripples of the pressure rub acts a little downstream (see ``Ripples``).
-    Parameters and errors as of ``Friction``.
+    ripples of the pressure rub acts a little downstream (see ``Ripples``); not on one with steps (``stepped``), over
+    which the pressure has no smooth part. Other parameters and errors as of ``Friction``.
     """
 
-    def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
+    def __init__(
+        self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None, stepped: bool = False
+    ) -> None:
         super().__init__(contact, law, speed=speed)
+        self.stepped = stepped
         self.slip = ng.Parameter(1.0)
         self.loads = {f"{contact.name} slip": self.slip}
         self._ripples: Ripples | None = None
@@ -103,7 +106,7 @@ class FullSliding(Friction):
         stretch = unknowns.kinematics.area_stretch(u, ng.Grad(u).Trace())
         mu = self.coefficient(p / stretch) * unknowns.kinematics.weight
         work = -mu * self.slip * p * sum(t * v for t, v in zip(tangent, contact.virtual(unknowns), strict=True))
-        if isinstance(contact, Contact):
+        if isinstance(contact, Contact) and not self.stepped:
             self._ripples = Ripples(contact, unknowns)
             work += mu * ng.IfPos(self.slip, self.slip, -self.slip) * self._ripples.moved
         self._unknowns = unknowns

@@ -52,7 +52,7 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
             for name in after.tractions:
                 values = before.contact.edge_values(old.fields[name])[twin]
                 after.contact.set_edge_values(new.fields[name], values)
-        _unfold(new)
+        unfold(new)
         carried.append(new.state.vec.FV().NumPy().copy())
     old.state.vec.FV().NumPy()[:] = keep
     return carried
@@ -77,23 +77,28 @@ def _take_inside(search: PointSearch, old: Problem, new: Problem, target: Array)
     target[new.part(VOLUMETRIC_STRESS)] = search(old.fields[VOLUMETRIC_STRESS])[: body.mesh.nv, 0]
 
 
-def _unfold(problem: Problem) -> None:
-    """Refill the displacement harmonically around elements that interpolation has crushed or turned over."""
-    mesh, u = problem.body.mesh, problem.fields[DISPLACEMENT]
-    jacobian = ng.Det(ng.Id(2) + ng.Grad(u)) * problem.kinematics.hoop_stretch(u)
-    rule = ng.IntegrationRule(ng.TRIG, 4)
-    points = mesh.MapToAllElements(rule, ng.VOL)
-    triangles = mesh.ngmesh.Elements2D().NumPy()["nodes"][:, :3].astype(int) - 1
+def unfold(problem: Problem) -> None:
+    """Refill the displacement harmonically around elements that a first guess has crushed or turned over."""
+    mesh, u, points = problem.body.mesh, problem.fields[DISPLACEMENT], problem.points
+    points.follow()
+    corners: NDArray[np.intp] | None = None
     for rings in (1, 2, 3, 4):
-        lowest = np.asarray(jacobian(points)).reshape(len(triangles), -1).min(axis=1)
-        marked = lowest < LOWEST_JACOBIAN
+        xx, xy, yx, yy, hoop = np.moveaxis(points.strain(problem.state.vec.FV().NumPy())[..., :5], -1, 0)
+        jacobian = ((1 + xx) * (1 + yy) - xy * yx) * (1 + hoop)
+        marked = jacobian.min(axis=1) < LOWEST_JACOBIAN
         if not marked.any():
             return
+        corners = _corners(mesh) if corners is None else corners
         for _ in range(rings):
             touched = np.zeros(mesh.nv, dtype=bool)
-            touched[triangles[marked]] = True
-            marked = touched[triangles].any(axis=1)
+            touched[corners[marked]] = True
+            marked = touched[corners].any(axis=1)
         _fill_harmonically(u, marked)
+
+
+def _corners(mesh: ng.Mesh) -> NDArray[np.intp]:
+    """Vertices of each element, the last one twice in a triangle; shape (ne, 4)."""
+    return np.array([([v.nr for v in mesh[ng.ElementId(ng.VOL, i)].vertices] * 2)[:4] for i in range(mesh.ne)])
 
 
 def _fill_harmonically(u: ng.GridFunction, marked: NDArray[np.bool_]) -> None:
