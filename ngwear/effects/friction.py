@@ -106,15 +106,16 @@ class FullSliding(Friction):
         stretch = unknowns.kinematics.area_stretch(u, ng.Grad(u).Trace())
         mu = self.coefficient(p / stretch) * unknowns.kinematics.weight
         work = -mu * self.slip * p * sum(t * v for t, v in zip(tangent, contact.virtual(unknowns), strict=True))
-        if isinstance(contact, Contact) and not self.stepped:
+        if isinstance(contact, Contact):
             self._ripples = Ripples(contact, unknowns)
+        if self._ripples is not None and not self.stepped:
             work += mu * ng.IfPos(self.slip, self.slip, -self.slip) * self._ripples.moved
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
 
     def gather(self) -> None:
-        if self._ripples is not None:
+        if self._ripples is not None and not self.stepped:
             self._ripples.gather()
 
     def force(self) -> Array:
