@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.equilibrium.keep import keep
@@ -79,7 +80,20 @@ def exhaustion(state: State, repeats: int) -> Array:
     out[stage.body.numbers] = criterion.exhaustion(stresses(stage))
     if criterion.accumulates:
         out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
-    return np.where(cells.living & cells.layers, out, 0.0)
+    return np.where(cells.living & cells.layers & _near_contact(stage), out, 0.0)
+
+
+def _near_contact(stage: Stage) -> Mask:
+    """Which elements lie within reach of a contact that wears and carries load."""
+    cells, reach = stage.body.now, stage.scene.deactivation.reach
+    if reach is None:
+        return np.ones(len(cells.fate), dtype=bool)
+    profiles = [stage.contacts[c.name].profile() for c in stage.scene.contacts if c.wears]
+    loaded_places = np.vstack([p.reference[p.nominal_pressure > 0] for p in profiles])
+    if len(loaded_places) == 0:
+        return np.zeros(len(cells.fate), dtype=bool)
+    distance, _ = cKDTree(loaded_places).query(cells.centres())
+    return distance <= reach
 
 
 def begin(state: State) -> None:
@@ -96,7 +110,7 @@ def begin(state: State) -> None:
     state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
     used = exhaustion(state, 1)
     worst = int(used.argmax())
-    x, y = cells.points[cells.corners[worst]].mean(axis=0)
+    x, y = cells.centres()[worst]
     require(
         used[worst] < 1.0,
         "deactivation.damage.critical",
@@ -179,7 +193,8 @@ def follow(state: State, outline: Contour, points: Array) -> None:
     body, sieve = state.stage.body, state.stage.scene.deactivation.distortion
     cells = body.cells.moved(points)
     worn = cells.area
-    while len(reached := _reached(cells)):
+    went = dict(zip(cells.rim.tolist(), np.linalg.norm(points - outline.points, axis=1), strict=True))
+    while len(reached := _reached(cells, went)):
         cells = cells.merged(reached)
     state.ledger.lost[Fate.DISTORTED] += worn - cells.area  # of walls whose ends were merged
     if sieve is not None and (distorted := sieve.finds(cells)).any():
@@ -190,14 +205,15 @@ def follow(state: State, outline: Contour, points: Array) -> None:
         go_on(state, cells)
 
 
-def _reached(cells: Cells) -> NDArray[np.intp]:
-    """Points of the outline that are about to pass the next ones on their columns."""
+def _reached(cells: Cells, went: dict[int, float]) -> NDArray[np.intp]:
+    """Points of the outline that have come near the next ones on their columns, or passed them on the way they went."""
     rim = cells.rim
     place, beneath = cells.points[rim], cells.below[rim]
     chord = np.roll(place, -1, axis=0) - np.roll(place, 1, axis=0)
     normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
     left = ((cells.points[beneath] - place) * normal).sum(axis=1)
     near = THINNEST * np.sqrt(np.median(cells.made[cells.layers]))
-    # A column along the outline, in a wall, is not worn; one that points outwards has been passed.
+    # A column along the outline, in a wall, is not worn; one that points outwards has been passed, or hangs over.
     across = np.abs((cells.inward() * normal).sum(axis=1)) > STEEPEST
-    return rim[(beneath >= 0) & across & (left < near)]
+    passed = left >= -np.array([went[point] for point in rim.tolist()])
+    return rim[(beneath >= 0) & across & passed & (left < near)]

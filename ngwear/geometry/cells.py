@@ -105,6 +105,11 @@ class Cells:
         before[missing[:, 3], 0] = place[missing[:, 3], 2]
         return after - place, before - place
 
+    def centres(self) -> Array:
+        """Means of the elements' corners [mm], shape (m, 2)."""
+        real = (self.corners >= 0)[..., None]
+        return (self.points[self.corners] * real).sum(axis=1) / real.sum(axis=1)
+
     @property
     def area(self) -> float:
         """Area of the living elements [mm²]."""

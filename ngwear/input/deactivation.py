@@ -17,8 +17,10 @@ def read_deactivation(table: Any) -> Deactivation:
     """Layers, filter and damage; what the table leaves out does not happen."""
     if not isinstance(table, dict):
         raise SceneError(PLACE, table, "must be a table [deactivation]")
-    known(f"{PLACE}.", table, {"depth", "distortion", "damage"})
+    known(f"{PLACE}.", table, {"depth", "distortion", "damage", "reach"})
     parts: dict[str, Any] = {"depth": typed(f"{PLACE}.depth", get(table, PLACE, "depth"), "float")}
+    if "reach" in table:
+        parts["reach"] = typed(f"{PLACE}.reach", table["reach"], "float")
     if "distortion" in table:
         parts["distortion"] = record(DistortionFilter, f"{PLACE}.distortion", table["distortion"])
     if "damage" in table:

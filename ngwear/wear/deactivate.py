@@ -50,11 +50,17 @@ class Deactivation:
     distortion : DistortionFilter or None
     damage : Criterion or None
         Only the layers are torn.
+    reach : float or None
+        How far from a contact that wears and carries load elements are torn [mm], what friction tears out; everywhere
+        in the layers if it is not given, cracks included.
     """
 
     depth: float
     distortion: DistortionFilter | None = None
     damage: Criterion | None = None
+    reach: float | None = None
 
     def __post_init__(self) -> None:
         require(self.depth > 0, "deactivation.depth", self.depth, "must be greater than 0 mm")
+        positive = self.reach is None or self.reach > 0
+        require(positive, "deactivation.reach", self.reach, "must be greater than 0 mm, or left out")
