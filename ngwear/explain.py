@@ -9,6 +9,7 @@ from ngwear.drift import friction_range
 from ngwear.laws import Constant
 from ngwear.scene import ContactSpec, Scene
 from ngwear.wear.archard import critical_distance
+from ngwear.wear.deactivate import Deactivation
 
 
 def explain(scene: Scene) -> dict[str, Any]:
@@ -20,11 +21,10 @@ def explain(scene: Scene) -> dict[str, Any]:
         If the section cannot be meshed.
     """
     from ngwear.equilibrium.linear import has_pardiso
-    from ngwear.geometry.body import Body
-    from ngwear.refinement import mounting_field
+    from ngwear.mounting import unworn_body
     from ngwear.stage import Stage
 
-    stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
+    stage = Stage(scene, unworn_body(scene))
     problem, material = stage.problem, scene.material
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
     critical = critical_distance(scene.accuracy.patch, rate, material.plane_strain_modulus)
@@ -38,6 +38,8 @@ def explain(scene: Scene) -> dict[str, Any]:
         laws = [c.wear_law.words if c.wear_law else "Archard" for c in scene.contacts if c.wears]
         how = f"{scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
         present["wear"] = f"{' / '.join(dict.fromkeys(laws))}, {how}"
+    if scene.deactivation is not None:
+        present["elements that may be lost"] = _deactivation_in_words(scene.deactivation)
     present |= {f"wear rate at '{c.name}'": _wear_in_words(scene, c) for c in scene.contacts if c.wear_rate.varies}
     present |= {
         f"wear of the surface of '{c.name}'": f"k = {c.counter_wear_rate:g} mm²/N, a profile that moves with it"
@@ -70,6 +72,17 @@ def explain(scene: Scene) -> dict[str, Any]:
         },
         **({"arms of the memory": _arms(scene)} if scene.prony is not None else {}),
     }
+
+
+def _deactivation_in_words(deactivation: Deactivation) -> str:
+    distortion, damage, reach = deactivation.distortion, deactivation.damage, deactivation.reach
+    told = [f"layers {deactivation.depth:g} mm deep; surface nodes wear through them"]
+    if distortion is not None:
+        told.append(f"distorted beyond a corner cosine of {distortion.corner_cosine:g}")
+    if damage is not None:
+        where = "" if reach is None else f" within {reach:g} mm of the contact"
+        told.append(f"torn where the {damage.name} exceeds {damage.critical:g}{where}")
+    return "; ".join(told)
 
 
 def _friction_in_words(scene: Scene, contact: ContactSpec) -> str:

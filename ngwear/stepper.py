@@ -17,14 +17,13 @@ from ngwear import counter_wear, deactivation
 from ngwear.cycle_memory import CycleMemory
 from ngwear.drift import steady_cycles
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
-from ngwear.errors import ConvergenceError, GeometryError, MeshError, SceneError
+from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
-from ngwear.geometry.element_body import ElementBody
-from ngwear.geometry.sizing import smoothed
 from ngwear.lasting_slip import lasting
+from ngwear.mounting import mount, refuse_idle_contacts, unworn_body
 from ngwear.program import Stroke
-from ngwear.refinement import mounting_field, outgrown, wanted_size
+from ngwear.refinement import outgrown, wanted_size
 from ngwear.remesh import is_due, remesh, still_to_slide
 from ngwear.scene import Scene
 from ngwear.stage import Stage
@@ -80,13 +79,13 @@ class Stepper:
             If a surface that shall wear the part does not touch it in any stroke.
         """
         scene = self.scene
-        stage = Stage(scene, self._body())
+        stage = Stage(scene, unworn_body(scene))
         control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
         state = State(stage, [], control)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         problem = stage.problem
         phases = len(scene.program.cycle)
-        state.work.add(self._mount(stage))
+        state.work.add(mount(stage, self.on_mount))
         if scene.deactivation is not None:
             deactivation.begin(state)
         for i, stroke in enumerate(scene.program.cycle):
@@ -94,7 +93,7 @@ class Stepper:
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
-        self._refuse_idle_contacts(state)
+        refuse_idle_contacts(state)
         if scene.deactivation is None:
             self._refine(state)
         else:
@@ -103,13 +102,6 @@ class Stepper:
             self._remember(state)
         self.on_mount(1.0)
         return state
-
-    def _body(self) -> Body | ElementBody:
-        """The unworn section, meshed for mounting."""
-        scene = self.scene
-        if scene.deactivation is not None:
-            return deactivation.element_body(scene)
-        return Body(smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch), mounting_field(scene))
 
     def _refine(self, state: State) -> None:
         """Mesh anew until the mesh is fine where the strokes of the cycle want it."""
@@ -128,19 +120,6 @@ class Stepper:
             iterations = self._solve_phase(state, i, stroke, sliding, far=far)
             state.reports.append(self._observe(state, i, iterations, sliding))
 
-    def _refuse_idle_contacts(self, state: State) -> None:
-        """A surface that never touches the part would wear nothing, without a word."""
-        problem = state.stage.problem
-        for spec in self.scene.contacts:
-            contact = state.stage.contacts[spec.name]
-            pressed = any(p.vector[problem.part(contact.pressure_name)].max() > 0 for p in state.phases)
-            if spec.wears and not pressed:
-                raise SceneError(
-                    f"contact '{spec.name}'.surface",
-                    spec.surface,
-                    "lifts off: it touches its edges in no stroke and wears nothing; move it closer or give a force",
-                )
-
     def _remember(self, state: State) -> None:
         """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
         scene = self.scene
@@ -158,32 +137,6 @@ class Stepper:
         durations = [stroke.duration for stroke in scene.program.cycle]
         mounted = stage.memory.stress()
         state.memory = CycleMemory(background, scene.arms, durations, mounted=mounted, rest=scene.program.rest)
-
-    def _mount(self, stage: Stage) -> Work:
-        """Bring the surfaces to their places, without fluid pressure."""
-        problem = stage.problem
-        loads = stage.mounted_loads()
-        options = StepOptions(first=1 / 64)
-
-        def report(fraction: float, _: Any) -> None:
-            self.on_mount(0.7 * fraction)
-
-        if stage.stretched_guess():
-            problem.set_loads(loads)
-            try:
-                return relax(problem, options, on_step=report)
-            except ConvergenceError as error:
-                log.info("%s: mounting by interference instead", error)
-                problem.state.vec[:] = 0.0
-        problem.set_loads(stage.first_touch())
-        try:
-            return advance(problem, loads, options, on_step=report)
-        except ConvergenceError as error:
-            found = str(error).removesuffix(f"\n{error.report}")
-            advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds
-            raise ConvergenceError(
-                f"no equilibrium found that carries the load{advice}: {found}", error.report
-            ) from None
 
     def finished(self, state: State) -> bool:
         """Whether all strokes of the program are done."""

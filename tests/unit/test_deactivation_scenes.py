@@ -7,6 +7,7 @@ from conftest import REMEMBERS
 
 from ngwear import deactivation
 from ngwear.errors import GeometryError, MeshError, SceneError
+from ngwear.explain import explain
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.contour import polygon_area
 from ngwear.materials import NeoHooke
@@ -14,6 +15,7 @@ from ngwear.program import Program
 from ngwear.run import GAVE_UP, run
 from ngwear.scene import SupportSpec
 from ngwear.scenefile import read_scene
+from ngwear.stepper import Stepper
 from ngwear.verify.cell_blocks import grid, held
 from ngwear.verify.material_book import torn_scene
 from ngwear.verify.no_loss import scene
@@ -267,3 +269,48 @@ def test_a_cycle_that_is_taken_back_has_tired_nothing(monkeypatch, stroke):
     each = [tiring.deactivation.damage.exhaustion(Stresses(s, np.zeros(len(s)))) for s in last]
     np.testing.assert_allclose(result.state.fatigue, np.maximum(*each), rtol=1e-9)
     assert not result.state.strained.any()
+
+
+def test_what_friction_tears_lies_near_the_contact():
+    weak = MaximumPrincipalStress(critical=1e-3)
+    near, everywhere = (scene("implicit", damage=replace(weak, critical=1e3), reach=reach) for reach in (0.15, None))
+    used = []
+    for one in (near, everywhere):
+        state = Stepper(one).start()
+        used.append(deactivation.exhaustion(state, 1))
+    profile = state.stage.contacts["cylinder"].profile()
+    places, centres = profile.reference[profile.nominal_pressure > 0], state.cells.centres()
+    distance = np.linalg.norm(centres[:, None] - places, axis=2).min(axis=1)
+    np.testing.assert_allclose(used[0], np.where(distance <= 0.15, used[1], 0.0), rtol=1e-9)
+    assert (used[1][distance > 0.15] > 0).any()
+
+
+def test_a_reach_of_nothing_is_refused():
+    with pytest.raises(SceneError, match=r"deactivation\.reach = 0\.0: must be greater than 0 mm, or left out"):
+        Deactivation(depth=0.3, reach=0.0)
+
+
+def test_explain_says_what_may_be_lost():
+    lost = explain(scene("implicit", damage=TensileNormalStress(critical=2.0), distortion=DistortionFilter()))
+    told = lost["effects"]["elements that may be lost"]
+    assert "0.3 mm deep" in told
+    assert "corner cosine of 0.99" in told
+    assert "the tensile normal stress exceeds 2" in told
+    assert "elements that may be lost" not in explain(replace(scene(), deactivation=None))["effects"]
+
+
+def test_wear_passes_through_layers_and_loses_no_area():
+    """Nodes that reach those beneath become one with them: the outline and the contact stay, the area is the law's."""
+    base = scene("implicit")
+    (spec,) = base.contacts
+    deep = replace(
+        base,
+        contacts=(replace(spec, specific_wear_rate=60 * spec.specific_wear_rate),),
+        wear=replace(base.wear, step="jump"),
+    )
+    whole = Stepper(deep).start().cells
+    state = run(deep, figures=False).state
+    assert np.bincount(state.cells.fate, minlength=5)[Fate.WORN] > 5
+    assert len(state.contour) == len(whole.contour)
+    assert whole.area - state.cells.area == pytest.approx(state.ledger.worn, rel=1e-9)
+    assert (whole.contour.points - state.contour.points)[:, 1].max() > 0.12

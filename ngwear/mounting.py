@@ -1,0 +1,72 @@
+"""Before the first stroke: the unworn section meshed, and mounted."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from typing import Any
+
+from ngwear import deactivation
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
+from ngwear.errors import ConvergenceError, SceneError
+from ngwear.geometry.body import Body
+from ngwear.geometry.element_body import ElementBody
+from ngwear.geometry.sizing import smoothed
+from ngwear.refinement import mounting_field
+from ngwear.scene import Scene
+from ngwear.stage import Stage
+from ngwear.state import State
+
+log = logging.getLogger(__name__)
+
+
+def unworn_body(scene: Scene) -> Body | ElementBody:
+    """The unworn section, meshed for mounting."""
+    if scene.deactivation is not None:
+        return deactivation.element_body(scene)
+    return Body(smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch), mounting_field(scene))
+
+
+def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
+    """Bring the surfaces to their places, without fluid pressure; ``on_mount`` is called with the fraction done.
+
+    Raises
+    ------
+    ConvergenceError
+        If no equilibrium carries the load.
+    """
+    problem = stage.problem
+    loads = stage.mounted_loads()
+    options = StepOptions(first=1 / 64)
+
+    def report(fraction: float, _: Any) -> None:
+        on_mount(0.7 * fraction)
+
+    if stage.stretched_guess():
+        problem.set_loads(loads)
+        try:
+            return relax(problem, options, on_step=report)
+        except ConvergenceError as error:
+            log.info("%s: mounting by interference instead", error)
+            problem.state.vec[:] = 0.0
+    problem.set_loads(stage.first_touch())
+    try:
+        return advance(problem, loads, options, on_step=report)
+    except ConvergenceError as error:
+        found = str(error).removesuffix(f"\n{error.report}")
+        advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds
+        raise ConvergenceError(f"no equilibrium found that carries the load{advice}: {found}", error.report) from None
+
+
+def refuse_idle_contacts(state: State) -> None:
+    """SceneError for a surface that never touches the part: it would wear nothing, without a word."""
+    problem = state.stage.problem
+    for spec in state.stage.scene.contacts:
+        contact = state.stage.contacts[spec.name]
+        pressed = any(p.vector[problem.part(contact.pressure_name)].max() > 0 for p in state.phases)
+        if spec.wears and not pressed:
+            raise SceneError(
+                f"contact '{spec.name}'.surface",
+                spec.surface,
+                "lifts off: it touches its edges in no stroke and wears nothing; move it closer or give a force",
+            )
