@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT
+from ngwear.equilibrium.carry import unfold
 from ngwear.equilibrium.keep import keep
 from ngwear.errors import GeometryError, MeshError, require
 from ngwear.geometry.cells import Cells, Fate
@@ -177,7 +178,12 @@ def go_on(state: State, cells: Cells) -> None:
         stage = Stage(old.scene, ElementBody(cells))
     except MeshError as error:
         raise GeometryError(f"what is left of the section is held or loaded by nothing: {error}") from None
-    adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
+    vectors = keep(old.problem, [p.vector for p in state.phases], stage.problem)
+    for vector in vectors:
+        stage.problem.state.vec.FV().NumPy()[:] = vector
+        unfold(stage.problem)
+        vector[:] = stage.problem.state.vec.FV().NumPy()
+    adopt(state, stage, vectors)
 
 
 def follow(state: State, outline: Contour, points: Array) -> None:

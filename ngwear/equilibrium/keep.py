@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Array
-from ngwear.equilibrium.carry import contact_pairs, sticking_pairs, unfold
+from ngwear.equilibrium.carry import contact_pairs, sticking_pairs
 from ngwear.equilibrium.problem import Problem
 from ngwear.geometry.element_body import ElementBody, Index
 
@@ -48,7 +48,6 @@ def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
             for name in after.tractions:
                 values = np.where(twin >= 0, before.contact.edge_values(old.fields[name])[twin], 0.0)
                 after.contact.set_edge_values(new.fields[name], values)
-        unfold(new)
         kept.append(new.state.vec.FV().NumPy().copy())
     shown[:] = before_all
     return kept
