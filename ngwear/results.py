@@ -123,7 +123,7 @@ class Recorder:
             "solves [-]": state.work.solves,
             "retries [-]": state.work.retries,
             "remeshes [-]": ledger.remeshes,
-            "elements [-]": state.stage.body.mesh.ne,
+            "elements [-]": state.stage.body.mesh.ne if report.cells is None else int(report.cells.living.sum()),
             "wall time [s]": round(wall, 3),
         }
         return row

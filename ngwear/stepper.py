@@ -219,7 +219,10 @@ class Stepper:
         state.stage.body.move_to(contour)
 
     def _step(self, state: State, cycles: int) -> float:
-        """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown)."""
+        """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown).
+
+        It is infinite if something is torn within a jump.
+        """
         cycle, memory = self.scene.program.cycle, state.memory
         plan = self._plan(state.strokes, cycles, self.scene.program.strokes)
         state.reports = []
@@ -233,6 +236,8 @@ class Stepper:
                 wearing = Wearing.begin(state, i, sliding, later=later)
                 iterations += self._solve_phase(state, i, cycle[i], sliding, plan=plan)
                 tears = self.scene.deactivation is not None and deactivation.tear(state, outline, repeats)
+                if tears and repeats > 1 and self.scene.wear.step == "jump":
+                    return math.inf  # when it tears is found in single cycles
                 outline = outline if not tears else state.contour
             if memory is not None:
                 memory.leave(state.stage.memory, i)

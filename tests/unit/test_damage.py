@@ -215,3 +215,22 @@ def test_the_filter_finds_living_elements_whose_corners_are_too_sharp():
     assert np.flatnonzero(sharp > 0.7).tolist() == [20, 21]
     assert np.flatnonzero(DistortionFilter(corner_cosine=0.7).finds(cells)).tolist() == [20]
     assert not DistortionFilter(corner_cosine=float(sharp.max())).finds(cells).any()
+
+
+def test_jumps_tear_what_single_cycles_tear():
+    fatigue, _, cells = tired(2, critical=2.0)[0]
+    critical = 2.0 * math.sqrt(fatigue[cells.quads].max() / 0.15)  # 0.15 a cycle: torn in the seventh
+    base = scene("implicit", damage=Fatigue(exponent=2.0, critical=critical))
+    (spec,) = base.contacts
+    contacts, program = (replace(spec, specific_wear_rate=1e-12),), Program(cycle=base.program.cycle, strokes=16)
+    found = []
+    for step in ("each", "jump"):
+        one = replace(base, contacts=contacts, program=program, wear=replace(base.wear, step=step))
+        stepper = Stepper(one)
+        state, steps = stepper.start(), 0
+        while not stepper.finished(state):
+            state, steps = stepper.advance(state), steps + 1
+        found.append((state.cells.fate, steps))
+    assert (found[0][0] == Fate.TORN).any()
+    np.testing.assert_array_equal(found[0][0], found[1][0])
+    assert found[1][1] < found[0][1] == 8
