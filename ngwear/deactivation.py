@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.equilibrium.carry import unfold
 from ngwear.equilibrium.keep import keep
-from ngwear.errors import GeometryError, MeshError, require
+from ngwear.errors import GeometryError, MeshError, SceneError, require
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.element_body import ElementBody
@@ -31,18 +31,19 @@ THINNEST = 0.2  # of an element's side: how near a surface node comes to the one
 
 
 def element_body(scene: Scene) -> ElementBody:
-    """The section of a scene that deactivates elements, meshed in layers below the edges that wear."""
-    accuracy = scene.accuracy
-    return ElementBody(
-        layered(
-            scene.contour,
-            scene.worn_edges,
-            depth=scene.deactivation.depth,
-            edge=accuracy.patch,
-            coarse=accuracy.coarse,
-            grading=accuracy.grading,
-        )
-    )
+    """The section of a scene that deactivates elements, meshed in layers below the edges that wear.
+
+    Raises
+    ------
+    SceneError
+        If the layers do not fit the section.
+    """
+    accuracy, depth = scene.accuracy, scene.deactivation.depth
+    sizes = {"edge": accuracy.patch, "coarse": accuracy.coarse, "grading": accuracy.grading}
+    try:
+        return ElementBody(layered(scene.contour, scene.worn_edges, depth=depth, **sizes))
+    except GeometryError as error:
+        raise SceneError("deactivation.depth", depth, f"no such layers fit the section: {error}") from None
 
 
 def stresses(stage: Stage) -> Stresses:

@@ -71,6 +71,17 @@ def layered(
     return cells
 
 
+def _require_inside(contour: Contour, grid: Array) -> None:
+    """The layers' far side must lie in the section, with room for triangles beyond it."""
+    from shapely import Polygon, contains_xy
+
+    inner = grid[-1, 1:-1]
+    out = ~contains_xy(Polygon(contour.points), *inner.T)
+    if out.any():
+        place, depth = inner[out][0].round(3).tolist(), float(np.linalg.norm(grid[-1, 0] - grid[0, 0]))
+        raise GeometryError(f"layers of {depth:.3g} mm leave the section at {place}: take fewer")
+
+
 def _face(contour: Contour, edges: tuple[str, ...], edge: float) -> tuple[Array, list[str]]:
     """Nodes along the named edges, about ``edge`` apart, and the name of each piece between two."""
     on = contour.on(edges)
@@ -119,6 +130,7 @@ def _rest(
         points, corners = np.vstack([points[:-skip], grid[-1:, 0]]), corners[: len(corners) - skip + 1]
         names = names[: len(names) - skip + 1]
         sides |= {(b, a): name for a, b in zip(number[:-1, 0], number[1:, 0], strict=True)}
+    _require_inside(contour, grid)
     ring = [*points, *up, *grid[-1, 1:-1], *down]
     more = len(ring) - len(names)
     flags = np.concatenate([corners, np.ones(len(ring) - len(corners), dtype=bool)])

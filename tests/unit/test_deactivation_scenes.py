@@ -314,3 +314,10 @@ def test_wear_passes_through_layers_and_loses_no_area():
     assert len(state.contour) == len(whole.contour)
     assert whole.area - state.cells.area == pytest.approx(state.ledger.worn, rel=1e-9)
     assert (whole.contour.points - state.contour.points)[:, 1].max() > 0.12
+
+
+@pytest.mark.parametrize(("depth", "told"), [(2.0, "more than the edge"), (5.0, "more than the edge")])
+def test_layers_that_do_not_fit_are_a_mistake_in_the_scene(depth, told):
+    thick = replace(scene(), deactivation=Deactivation(depth=depth))
+    with pytest.raises(SceneError, match=rf"deactivation\.depth = {depth}: no such layers fit the section: .*{told}"):
+        Stepper(thick).start()

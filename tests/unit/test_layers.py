@@ -1,8 +1,11 @@
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
 from ngwear.geometry.contour import Contour
+from ngwear.geometry.contour_files import read_contour
 from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.layers import layered
 
@@ -84,3 +87,11 @@ def test_layers_thicker_than_the_side_is_long_are_refused(rectangle):
 def test_edges_not_in_one_piece_are_refused(rectangle, edges):
     with pytest.raises(GeometryError, match="must be one connected piece of the outline, and not all of it"):
         layered(rectangle(4.0, 2.0), edges, **OPTIONS)
+
+
+def test_layers_that_leave_the_section_between_its_sides_are_refused():
+    """The shipped seal's worn face ends within its lower side: nothing beside the layers would stop them."""
+    contour = read_contour(Path(__file__).parents[2] / "geometries" / "torn_seal" / "contour.toml")
+    edges = ("heel", "left ridges", "lip", "right ridges", "sealed face")
+    with pytest.raises(GeometryError, match=r"layers of 3\.9 mm leave the section at .*: take fewer"):
+        layered(contour, edges, depth=3.9, edge=0.1, coarse=0.3, grading=0.35)
