@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import abc
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
-from ngwear.effects.pressure_wear import PressureWear
 from ngwear.geometry.meshed import Meshed
 from ngwear.surfaces import RigidSurface
+
+if TYPE_CHECKING:  # brings friction along
+    from ngwear.effects.pressure_wear import PressureWear
 
 Array = NDArray[np.float64]
 COORDINATES = (ng.x, ng.y, ng.z)
