@@ -203,7 +203,8 @@ def follow(state: State, outline: Contour, points: Array) -> None:
     went = dict(zip(cells.rim.tolist(), np.linalg.norm(points - outline.points, axis=1), strict=True))
     while len(reached := _reached(cells, went)):
         cells = cells.merged(reached)
-    state.ledger.lost[Fate.DISTORTED] += worn - cells.area  # of walls whose ends were merged
+    if len(cells.rim) < len(body.cells.rim):
+        state.ledger.lost[Fate.DISTORTED] += worn - cells.area  # by walls whose ends were merged
     if sieve is not None and (distorted := sieve.finds(cells)).any():
         cells = booked(state, cells, distorted, Fate.DISTORTED)
     if np.array_equal(cells.corners, body.cells.corners) and np.array_equal(cells.fate, body.cells.fate):
