@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from ngwear import counter_wear, deactivation
 from ngwear.cycle_memory import CycleMemory
 from ngwear.drift import steady_cycles
+from ngwear.equilibrium.carry import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.fields.background import Background
@@ -308,6 +309,8 @@ class Stepper:
         guesses = [before] if fresh else [before + repeats * phase.rate, before]
         for guess in [] if far else guesses:
             vector[:] = guess
+            if self.scene.deactivation is not None:
+                unfold(problem)  # elements that wear has made thin since
             for term in problem.terms:
                 term.refresh()
             if settle(problem, StepOptions(), work).converged:
@@ -348,6 +351,8 @@ class Stepper:
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
         vector[:] = state.phases[index].vector
+        if self.scene.deactivation is not None:
+            unfold(problem)
         if not stage.remembers or self.scene.deactivation is not None:
             try:
                 work.add(relax(problem, StepOptions(first=0.25)))

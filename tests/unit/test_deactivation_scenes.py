@@ -321,3 +321,17 @@ def test_layers_that_do_not_fit_are_a_mistake_in_the_scene(depth, told):
     thick = replace(scene(), deactivation=Deactivation(depth=depth))
     with pytest.raises(SceneError, match=rf"deactivation\.depth = {depth}: no such layers fit the section: .*{told}"):
         Stepper(thick).start()
+
+
+def test_first_guesses_fold_no_element_that_wear_has_made_thin():
+    """Half a side is worn in each step; it once ended with folded first guesses after six strokes."""
+    base = scene("implicit", distortion=DistortionFilter())
+    (spec,) = base.contacts
+    fast = replace(
+        base,
+        contacts=(replace(spec, specific_wear_rate=1e-2),),
+        program=Program(cycle=base.program.cycle, strokes=10),
+    )
+    result = run(fast, figures=False)
+    assert result.state.work.retries == 0
+    assert result.summary["maximum depth [mm]"] > 0.25
