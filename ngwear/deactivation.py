@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.equilibrium.carry import unfold
 from ngwear.equilibrium.keep import keep
 from ngwear.errors import GeometryError, MeshError, SceneError, require
 from ngwear.geometry.cells import Cells, Fate
@@ -179,12 +178,7 @@ def go_on(state: State, cells: Cells) -> None:
         stage = Stage(old.scene, ElementBody(cells))
     except MeshError as error:
         raise GeometryError(f"what is left of the section is held or loaded by nothing: {error}") from None
-    vectors = keep(old.problem, [p.vector for p in state.phases], stage.problem)
-    for vector in vectors:
-        stage.problem.state.vec.FV().NumPy()[:] = vector
-        unfold(stage.problem)
-        vector[:] = stage.problem.state.vec.FV().NumPy()
-    adopt(state, stage, vectors)
+    adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
 
 
 def follow(state: State, outline: Contour, points: Array) -> None:

@@ -20,8 +20,10 @@ from ngwear.sliding.scene import KIND as PIN
 from ngwear.sliding.scene import PinScene
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
-TABLES = {"scene", "contour", "material", "contact", "fluid", "support", "program", "accuracy", "wear", "save"}
-TABLES |= {"deactivation"}
+TABLES = {
+    *("scene", "contour", "material", "contact", "fluid", "support"),
+    *("program", "accuracy", "wear", "deactivation", "save"),
+}
 KINDS = {"axisymmetric": True, "plane strain": False}
 
 

@@ -308,9 +308,7 @@ class Stepper:
         work = Work()
         guesses = [before] if fresh else [before + repeats * phase.rate, before]
         for guess in [] if far else guesses:
-            vector[:] = guess
-            if self.scene.deactivation is not None:
-                unfold(problem)  # elements that wear has made thin since
+            self._guess(state, guess)
             for term in problem.terms:
                 term.refresh()
             if settle(problem, StepOptions(), work).converged:
@@ -322,6 +320,13 @@ class Stepper:
         shares = stage.shares(stroke)
         state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None, shares=shares)
         return work.iterations
+
+    def _guess(self, state: State, vector: Array) -> None:
+        """Start the next solve from a vector; where elements are lost or wear has made them thin, they are unfolded."""
+        problem = state.stage.problem
+        problem.state.vec.FV().NumPy()[:] = vector
+        if self.scene.deactivation is not None:
+            unfold(problem)
 
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """What there is to see at the stroke's equilibrium."""
@@ -350,16 +355,14 @@ class Stepper:
         stage, cycle = state.stage, self.scene.program.cycle
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
-        vector[:] = state.phases[index].vector
-        if self.scene.deactivation is not None:
-            unfold(problem)
+        self._guess(state, state.phases[index].vector)
         if not stage.remembers or self.scene.deactivation is not None:
             try:
                 work.add(relax(problem, StepOptions(first=0.25)))
                 return
             except ConvergenceError as error:
                 log.info("%s: trying from the stroke before", error)
-        vector[:] = state.phases[index - 1].vector
+        self._guess(state, state.phases[index - 1].vector)
         problem.set_loads(stage.stroke_loads(cycle[index - 1]))
         stage.begin(vector)
         try:

@@ -97,7 +97,7 @@ def unfold(problem: Problem) -> None:
 
 
 def _corners(mesh: ng.Mesh) -> NDArray[np.intp]:
-    """Vertices of each element, the last one twice in a triangle; shape (ne, 4)."""
+    """Vertices of each element, the first one twice in a triangle; shape (ne, 4)."""
     return np.array([([v.nr for v in mesh[ng.ElementId(ng.VOL, i)].vertices] * 2)[:4] for i in range(mesh.ne)])
 
 

@@ -45,10 +45,7 @@ def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
     """
     if not isinstance(value, dict):
         return typed(place, value, "float")
-    kind = get(value, place, "law")
-    if not isinstance(kind, str) or kind not in _LAWS:
-        raise SceneError(f"{place}.law", kind, f"must be one of {list(_LAWS)}")
-    values = {key: inner for key, inner in value.items() if key not in ("law", "source")}
+    kind, values = _chosen(place, value, _LAWS)
     if kind == "product":
         return _product(place, values, folder)
     if kind == "lubrication" and "fitted" in values:
@@ -79,11 +76,16 @@ def read_wear_law(place: str, value: Any, folder: Path) -> WearLaw:
     """
     if not isinstance(value, dict):
         raise SceneError(place, value, 'must be a table, such as { law = "power", exponent = 2.0 }')
-    kind = get(value, place, "law")
-    if not isinstance(kind, str) or kind not in _WEAR_LAWS:
-        raise SceneError(f"{place}.law", kind, f"must be one of {list(_WEAR_LAWS)}")
-    values = {key: inner for key, inner in value.items() if key not in ("law", "source")}
+    kind, values = _chosen(place, value, _WEAR_LAWS)
     return _table(place, values, folder, _WEAR_LAWS[kind])
+
+
+def _chosen(place: str, table: dict[str, Any], laws: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Which of the laws a table asks for, and its values."""
+    kind = get(table, place, "law")
+    if not isinstance(kind, str) or kind not in laws:
+        raise SceneError(f"{place}.law", kind, f"must be one of {list(laws)}")
+    return kind, {key: value for key, value in table.items() if key not in ("law", "source")}
 
 
 def _product(place: str, values: dict[str, Any], folder: Path) -> Product:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.errors import SceneError, require
+from ngwear.errors import require
 
 Array = NDArray[np.float64]
 
@@ -109,10 +109,3 @@ class Fatigue(Criterion):
 
 
 CRITERIA = {kind.name: kind for kind in (TensileNormalStress, MaximumPrincipalStress, StrainEnergyDensity, Fatigue)}
-
-
-def criterion(name: str, **values: float) -> Criterion:
-    """A criterion by its name; SceneError for one that is not known."""
-    if name not in CRITERIA:
-        raise SceneError("deactivation.damage.criterion", name, f"must be one of {list(CRITERIA)}")
-    return CRITERIA[name](**values)

@@ -8,6 +8,7 @@ from ngwear import deactivation
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.errors import SceneError
 from ngwear.geometry.cells import Fate
+from ngwear.input.deactivation import read_deactivation
 from ngwear.materials import NeoHooke
 from ngwear.program import Program
 from ngwear.scene import SupportSpec
@@ -21,7 +22,6 @@ from ngwear.wear.damage import (
     StrainEnergyDensity,
     Stresses,
     TensileNormalStress,
-    criterion,
 )
 from ngwear.wear.deactivate import DistortionFilter
 
@@ -54,13 +54,14 @@ def test_each_criterion_has_its_name_and_only_fatigue_adds_up():
         "strain energy density": False,
         "fatigue": True,
     }
-    assert criterion("fatigue", critical=3.0, exponent=2.0) == Fatigue(critical=3.0, exponent=2.0)
-    assert criterion("maximum principal stress", critical=3.0) == MaximumPrincipalStress(critical=3.0)
+    for name, asked in (("fatigue", {"exponent": 2.0}), ("maximum principal stress", {})):
+        table = {"criterion": name, "critical": 3.0} | asked
+        assert read_deactivation({"depth": 1.0, "damage": table}).damage == CRITERIA[name](critical=3.0, **asked)
 
 
 def test_unknown_criteria_and_impossible_values_are_refused():
     with pytest.raises(SceneError, match=r"deactivation\.damage\.criterion = 'hoop stress': must be one of \['tensile"):
-        criterion("hoop stress", critical=1.0)
+        read_deactivation({"depth": 1.0, "damage": {"criterion": "hoop stress", "critical": 1.0}})
     with pytest.raises(SceneError, match=r"deactivation\.damage\.critical = 0\.0: must be greater than 0"):
         StrainEnergyDensity(critical=0.0)
     with pytest.raises(SceneError, match=r"deactivation\.damage\.exponent = -1\.0: must be greater than 0"):
