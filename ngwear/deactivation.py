@@ -78,10 +78,19 @@ def exhaustion(state: State, repeats: int) -> Array:
     stage, cells = state.stage, state.stage.body.cells
     criterion = stage.scene.deactivation.damage
     out = np.zeros(len(cells.fate))
-    out[stage.body.numbers] = criterion.exhaustion(stresses(stage))
+    out[stage.body.numbers] = _usage(stage)
     if criterion.accumulates:
         out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
     return np.where(cells.living & cells.layers & _near_contact(stage), out, 0.0)
+
+
+def _usage(stage: Stage) -> Array:
+    """How much of what it bears each living element is under, in the mesh's order; of fatigue, what a cycle uses up."""
+    criterion, found = stage.scene.deactivation.damage, stresses(stage)
+    if criterion.length is not None:
+        cells, mine = stage.body.now, stage.body.numbers
+        found = found.averaged(cells.centres()[mine], cells.areas()[mine], criterion.length)
+    return criterion.exhaustion(found)
 
 
 def _near_contact(stage: Stage) -> Mask:
@@ -146,7 +155,7 @@ def tire(state: State, repeats: int, *, last: bool) -> None:
     if deactivation is None or deactivation.damage is None or not deactivation.damage.accumulates:
         return
     mine = state.stage.body.numbers
-    state.strained[mine] = np.maximum(state.strained[mine], deactivation.damage.exhaustion(stresses(state.stage)))
+    state.strained[mine] = np.maximum(state.strained[mine], _usage(state.stage))
     if last:
         state.fatigue = state.fatigue + repeats * state.strained
         state.strained = np.zeros_like(state.strained)
@@ -198,7 +207,7 @@ def follow(state: State, outline: Contour, points: Array) -> None:
     while len(reached := _reached(cells, went)):
         cells = cells.merged(reached)
     if len(cells.rim) < len(body.cells.rim):
-        state.ledger.lost[Fate.DISTORTED] += worn - cells.area  # by walls whose ends were merged
+        state.ledger.lost[Fate.WORN] += worn - cells.area  # by walls whose ends were merged
     if sieve is not None and (distorted := sieve.finds(cells)).any():
         cells = booked(state, cells, distorted, Fate.DISTORTED)
     if np.array_equal(cells.corners, body.cells.corners) and np.array_equal(cells.fate, body.cells.fate):

@@ -33,6 +33,7 @@ def fingerprint(scene: Scene) -> str:
 
 
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
+BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
 
 
 def depths(before: Contour, after: Contour) -> Array:
@@ -131,7 +132,7 @@ class Recorder:
     def _book(self, report: Any) -> dict[str, Any]:
         """Area that the section has lost by each cause, in all and since the row before, and its elements."""
         ledger, before = report.ledger, self.rows[-1] if self.rows else {}
-        areas = {"wear": ledger.removed} | {name: ledger.lost[fate] for fate, name in LOST.items()}
+        areas = {"wear": ledger.removed} | {name: ledger.lost[fate] for fate, name in BOOK.items()}
         out: dict[str, Any] = {f"area lost by {name} [mm^2]": area for name, area in areas.items()}
         out["area lost in all [mm^2]"] = self.unworn_area - report.cells.area
         out |= {f"{k[:-7]} in this solve [mm^2]": area - before.get(k, 0.0) for k, area in list(out.items())}
@@ -183,7 +184,7 @@ class Recorder:
         for name in dict.fromkeys(scene.worn_edges):
             out[f"{name} depth [mm]"] = float(depth[unworn.on((name,))].max())
         if state.cells is not None:
-            out |= {f"area lost by {name} [mm^2]": ledger.lost[fate] for fate, name in LOST.items()}
+            out |= {f"area lost by {name} [mm^2]": ledger.lost[fate] for fate, name in BOOK.items()}
             out["area lost in all [mm^2]"] = self.unworn_area - state.cells.area
         peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
         for kind in cycle:
@@ -214,6 +215,8 @@ class Recorder:
             "units": UNITS,
             "ngwear": __version__,
         }
+        if scene.deactivation is not None and scene.deactivation.damage is not None:
+            out["error estimates"]["tearing too late [cycles]"] = ledger.late
         return out
 
     def _warnings(self) -> list[str]:

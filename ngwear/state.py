@@ -70,6 +70,8 @@ class Ledger:
         Largest relative change of the section's area in a remesh [-].
     lost : dict of Fate to float
         Area of deactivated elements by cause [mm²].
+    late : int
+        Cycles by which an element may have been torn too late, at the end of a jump.
     """
 
     worn: float = 0.0
@@ -79,6 +81,7 @@ class Ledger:
     remesh_jump: float = 0.0
     remeshes: int = 0
     lost: dict[Fate, float] = field(default_factory=lambda: dict.fromkeys(Fate, 0.0))
+    late: int = 0
 
     def copy(self) -> Ledger:
         """A book of its own with the same entries."""

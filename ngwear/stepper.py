@@ -38,6 +38,7 @@ from ngwear.wearing import Wearing
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
 
 
@@ -222,7 +223,7 @@ class Stepper:
     def _step(self, state: State, cycles: int) -> float:
         """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown).
 
-        It is infinite if something is torn within a jump.
+        It is infinite if something is torn too late, within a jump.
         """
         cycle, memory = self.scene.program.cycle, state.memory
         plan = self._plan(state.strokes, cycles, self.scene.program.strokes)
@@ -237,9 +238,10 @@ class Stepper:
                 wearing = Wearing.begin(state, i, sliding, later=later)
                 iterations += self._solve_phase(state, i, cycle[i], sliding, plan=plan)
                 tears = self.scene.deactivation is not None and deactivation.tear(state, outline, repeats)
-                if tears and repeats > 1 and self.scene.wear.step == "jump":
-                    return math.inf  # when it tears is found in single cycles
-                outline = outline if not tears else state.contour
+                if tears and repeats > max(1.0, LATE * self.scene.program.strokes / len(cycle)):
+                    return math.inf
+                if tears:
+                    outline, state.ledger.late = state.contour, max(state.ledger.late, repeats - 1)
             if memory is not None:
                 memory.leave(state.stage.memory, i)
             seen = self._observe(state, i, iterations, sliding)

@@ -77,24 +77,27 @@ def quarter(z: float, r: float, start: float) -> np.ndarray:
     return np.column_stack([z + 0.4 * np.cos(angle), r + 0.4 * np.sin(angle)])
 
 
-def edges() -> list[tuple[str, np.ndarray]]:
-    """Return the named edges, counter-clockwise from the foot of the back face."""
-    left = ridges(LEFT, 7, LEFT_BASE, LEFT_HEIGHT)
-    right = ridges(RIGHT, 2, RIGHT_BASE, RIGHT_HEIGHT)
+def edges(*, blunting: float = 0.0, tip_radius: float = TIP_RADIUS) -> list[tuple[str, np.ndarray]]:
+    """Return the named edges, counter-clockwise from the foot of the back face.
+
+    ``blunting`` takes roots nearer to the tips of the ridges, which stay where they are [mm].
+    """
+    left = ridges(LEFT, 7, (LEFT_BASE[0] - blunting, LEFT_BASE[1] - blunting), LEFT_HEIGHT - blunting)
+    right = ridges(RIGHT, 2, (RIGHT_BASE[0] - blunting, RIGHT_BASE[1] - blunting), RIGHT_HEIGHT - blunting)
     alpha, beta = np.radians(FLANKS)
     # The rounded tip lies above the apex of the flanks.
     half = (np.pi - alpha - beta) / 2
-    apex_drop = TIP_RADIUS * (1 / np.sin(half) * np.cos(half - (np.pi / 2 - alpha)) - 1)
+    apex_drop = tip_radius * (1 / np.sin(half) * np.cos(half - (np.pi / 2 - alpha)) - 1)
     apex = (TIP[0], TIP[1] - apex_drop)
     foot_left = (apex[0] - (left[-1, 1] - apex[1]) / np.tan(alpha), left[-1, 1])
     foot_right = (apex[0] + (right[0, 1] - apex[1]) / np.tan(beta), right[0, 1])
     lip = rounded(
-        [(*left[-1], 0), (*foot_left, FOOT_RADIUS), (*apex, TIP_RADIUS), (*foot_right, FOOT_RADIUS), (*right[0], 0)],
+        [(*left[-1], 0), (*foot_left, FOOT_RADIUS), (*apex, tip_radius), (*foot_right, FOOT_RADIUS), (*right[0], 0)],
         TIP_RADIUS / 4,
     )
     lip[:, 1] += TIP[1] - lip[:, 1].min()
     lip[0], lip[-1] = left[-1], right[0]
-    heel = rounded([(0, 11.4, 0), (0, LEFT_BASE[0], 0.15), (*left[0], 0)], 0.04)
+    heel = rounded([(0, 11.4, 0), (0, left[0, 1], 0.15), (*left[0], 0)], 0.04)
     toe = rounded([(*right[-1], 0), (4.6, 10.62, 0.2), (5.0, 11.4, 0.3), (5.0, 12.4, 0)], 0.04)
     return [
         ("heel", heel),

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 
 IN_ALL = "area lost in all [mm^2]"
 CAUSES = {"wear": "#9db7cc", "tearing": "#222222", "distortion": "#d98324", "coming loose": "#7f5fa8"}
+AREAS = CAUSES | {"merging": "#5e8c61"}  # walls of pits whose ends wear has made one: a little either way
 
 
 def has_book(result: ResultFile) -> bool:
@@ -25,8 +26,8 @@ def book_figure(result: ResultFile) -> Figure:
     series = result.series
     metres = series["sliding distance [mm]"] / 1e3
     figure, (area, count) = new_figure(2, (1.6, 1.0), size=(8, 7))
-    lost = {cause: series[f"area lost by {cause} [mm^2]"] for cause in CAUSES}
-    area.stackplot(metres, *lost.values(), colors=CAUSES.values(), labels=[f"by {cause}" for cause in CAUSES])
+    lost = {cause: series[f"area lost by {cause} [mm^2]"] for cause in AREAS}
+    area.stackplot(metres, *lost.values(), colors=AREAS.values(), labels=[f"by {cause}" for cause in AREAS])
     area.plot(metres, series[IN_ALL], color="k", lw=0.8, ls="--", label="in all")
     area.set_ylabel("area lost from the section [mm²]")
     area.set_ylim(bottom=min(0.0, area.dataLim.ymin))

@@ -39,6 +39,7 @@ CASES: dict[str, str] = {
     "lost_elements": "ngwear.verify.lost_elements",
     "tearing_off": "ngwear.verify.no_loss",
     "material_book": "ngwear.verify.material_book",
+    "torn_seal": "ngwear.verify.torn_seal",
     "lubrication": "ngwear.verify.lubrication",
     "sliding_roller": "ngwear.verify.sliding_roller",
     "shaft_on_plate": "ngwear.verify.shaft_on_plate",

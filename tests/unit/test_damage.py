@@ -11,7 +11,7 @@ from ngwear.geometry.cells import Fate
 from ngwear.input.deactivation import read_deactivation
 from ngwear.materials import NeoHooke
 from ngwear.program import Program
-from ngwear.scene import SupportSpec
+from ngwear.scene import SupportSpec, Wear
 from ngwear.stepper import Stepper
 from ngwear.verify.cell_blocks import grid, held, on_edge, pull
 from ngwear.verify.no_loss import scene
@@ -47,6 +47,17 @@ def test_criteria_by_hand(cauchy, principal):
     assert used == pytest.approx([max(principal / 8, 0.0) ** 3])
 
 
+def test_means_over_a_length_by_hand():
+    """Four elements in a row, 1 apart, the last of three times the area: neighbours count within a length of 2."""
+    centres, areas = np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]), np.array([1.0, 1.0, 1.0, 3.0])
+    stresses = Stresses(np.array([[4.0, 0, 0], [1.0, 0, 3.0], [1.0, 0, 0], [5.0, 2.0, 0]]), np.array([1.0, 3.0, 2.0, 6.0]))
+    wide = stresses.averaged(centres, areas, 2.0)
+    np.testing.assert_allclose(wide.cauchy[:, 0], [5 / 2, 6 / 3, 17 / 5, 16 / 4])
+    np.testing.assert_allclose(wide.cauchy[:, 2], [3 / 2, 3 / 3, 3 / 5, 0.0])
+    np.testing.assert_allclose(wide.energy, [2.0, 2.0, 23 / 5, 5.0])
+    np.testing.assert_array_equal(stresses.averaged(centres, areas, 1.9).cauchy, stresses.cauchy)
+
+
 def test_each_criterion_has_its_name_and_only_fatigue_adds_up():
     assert {name: kind.accumulates for name, kind in CRITERIA.items()} == {
         "tensile normal stress": False,
@@ -64,6 +75,8 @@ def test_unknown_criteria_and_impossible_values_are_refused():
         read_deactivation({"depth": 1.0, "damage": {"criterion": "hoop stress", "critical": 1.0}})
     with pytest.raises(SceneError, match=r"deactivation\.damage\.critical = 0\.0: must be greater than 0"):
         StrainEnergyDensity(critical=0.0)
+    with pytest.raises(SceneError, match=r"deactivation\.damage\.length = 0\.0: must be greater than 0 mm, or left out"):
+        StrainEnergyDensity(critical=1.0, length=0.0)
     with pytest.raises(SceneError, match=r"deactivation\.damage\.exponent = -1\.0: must be greater than 0"):
         Fatigue(critical=1.0, exponent=-1.0)
 
@@ -235,3 +248,23 @@ def test_jumps_tear_what_single_cycles_tear():
     assert (found[0][0] == Fate.TORN).any()
     np.testing.assert_array_equal(found[0][0], found[1][0])
     assert found[1][1] < found[0][1] == 8
+
+
+def test_in_a_jump_an_element_is_torn_at_most_one_hundredth_of_the_program_too_late():
+    """Hardly any wear: what a cycle uses up of the most strained element stays as it is."""
+    usage, cycles = 1 / 210.5, 400
+    tiring = replace(scene("implicit", damage=Fatigue(critical=1.0, exponent=2.0)), wear=Wear(step="jump", remesh="never"))
+    (spec,) = tiring.contacts
+    tiring = replace(tiring, contacts=(replace(spec, specific_wear_rate=1e-9),))
+    once = Stepper(replace(tiring, program=replace(tiring.program, strokes=2)))
+    most = once.advance(once.start()).fatigue.max()
+    damage = Fatigue(critical=math.sqrt(most / usage), exponent=2.0)
+    tiring = replace(tiring, deactivation=replace(tiring.deactivation, damage=damage))
+    stepper = Stepper(replace(tiring, program=replace(tiring.program, strokes=2 * cycles)))
+    state = stepper.start()
+    while not stepper.finished(state) and state.cells.living.all():
+        whole = state.strokes // 2
+        state = stepper.advance(state)
+    first = state.strokes // 2
+    assert whole < 211 <= first <= 211 + cycles // 100
+    assert first - whole - 1 == state.ledger.late <= cycles // 100

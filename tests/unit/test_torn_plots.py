@@ -11,7 +11,7 @@ from ngwear.cli import BAD_INPUT, OK, main
 from ngwear.errors import ResultError
 from ngwear.geometry.cells import Fate
 from ngwear.plots.animation import FILE, FRAMES, animate, frames, worn_window
-from ngwear.plots.book import CAUSES, IN_ALL, book_figure
+from ngwear.plots.book import AREAS, CAUSES, IN_ALL, book_figure
 from ngwear.plots.sections import living, lost, overlapping, sections, when, worn_face
 from ngwear.plots.stress import critical_stress, directions, stress_figure, tensile
 from ngwear.plots.torn import LOST, face_figure, ridge_figure, ridge_window
@@ -63,7 +63,8 @@ def result():
     for number, cause in enumerate(CAUSES):
         series[f"area lost by {cause} [mm^2]"] = 0.01 * (number + 1) * stroke
         series["elements worn away [-]" if cause == "wear" else f"elements lost by {cause} [-]"] = number * stroke
-    series[IN_ALL] = 0.1 * stroke
+    series["area lost by merging [mm^2]"] = 0.05 * stroke
+    series[IN_ALL] = 0.15 * stroke
     return ResultFile(
         scene="squares",
         outline=outline,
@@ -183,7 +184,7 @@ def test_principal_stress_for_its_criterion(result):
 def test_stacked_areas_are_the_series(result):
     area, count = book_figure(result).axes
     below = np.zeros(6)
-    for cause, stack in zip(CAUSES, area.collections, strict=True):
+    for cause, stack in zip(AREAS, area.collections, strict=True):
         top = below + result.series[f"area lost by {cause} [mm^2]"]
         corners = stack.get_paths()[0].vertices
         for x, low, high in zip(result.series["sliding distance [mm]"] / 1e3, below, top, strict=True):
