@@ -81,7 +81,8 @@ def _deactivation_in_words(deactivation: Deactivation) -> str:
         told.append(f"distorted beyond a corner cosine of {distortion.corner_cosine:g}")
     if damage is not None:
         where = "" if reach is None else f" within {reach:g} mm of the contact"
-        told.append(f"torn where the {damage.name} exceeds {damage.critical:g}{where}")
+        over = "" if damage.length is None else f", averaged over {damage.length:g} mm,"
+        told.append(f"torn where the {damage.name}{over} exceeds {damage.critical:g}{where}")
     return "; ".join(told)
 
 
