@@ -22,10 +22,10 @@ def has_book(result: ResultFile) -> bool:
 
 
 def book_figure(result: ResultFile) -> Figure:
-    """Area lost by each cause, one upon the other, and the number of elements lost."""
+    """Area lost by each cause, one upon the other, by each but wear alone, and the number of elements lost."""
     series = result.series
     metres = series["sliding distance [mm]"] / 1e3
-    figure, (area, count) = new_figure(2, (1.6, 1.0), size=(8, 7))
+    figure, (area, small, count) = new_figure(3, (1.5, 1.0, 1.0), size=(8, 9))
     lost = {cause: series[f"area lost by {cause} [mm^2]"] for cause in AREAS}
     area.stackplot(metres, *lost.values(), colors=AREAS.values(), labels=[f"by {cause}" for cause in AREAS])
     area.plot(metres, series[IN_ALL], color="k", lw=0.8, ls="--", label="in all")
@@ -35,12 +35,16 @@ def book_figure(result: ResultFile) -> Figure:
     handles, labels = area.get_legend_handles_labels()
     area.legend(handles[::-1], labels[::-1], loc="upper left")  # in the order in which they lie
     area.set_title(f"{result.scene}: material lost, by cause")
+    for cause, colour in list(AREAS.items())[1:]:
+        small.step(metres, lost[cause], where="post", color=colour, lw=1.5, label=f"by {cause}")
+    small.set_ylabel("the same without wear [mm²]")
+    small.legend(loc="center right")
     for cause, colour in CAUSES.items():
         column = "elements worn away [-]" if cause == "wear" else f"elements lost by {cause} [-]"
         count.step(metres, series[column], where="post", color=colour, lw=1.5, label=f"by {cause}")
     count.set_ylabel("elements lost [-]")
+    count.set_yscale("symlog", linthresh=10.0)
     count.set_ylim(bottom=0)
-    count.yaxis.get_major_locator().set_params(integer=True)
     count.set_xlabel("sliding distance [m]")
-    count.legend(loc="upper left")
+    count.legend(loc="center right")
     return figure

@@ -56,19 +56,8 @@ def living(snapshot: Snapshot, *, deformed: bool = False) -> tuple[list[Array], 
 
 
 def lost(first: Snapshot, now: Snapshot, fate: Fate) -> list[Array]:
-    """Polygons of the elements of a fate, each as it was when it was lost.
-
-    The points that it shares with living ones have moved on with the wear: what lies within the unworn element is left.
-    """
-    from shapely import Polygon
-
-    out = []
-    for k in np.flatnonzero(now.elements["fate"] == fate):
-        before, after = (polygons(s.elements["points [mm]"], s.elements["corners"][[k]])[0] for s in (first, now))
-        left = Polygon(after).buffer(0).intersection(Polygon(before))
-        seen = left.geom_type == "Polygon" and not left.is_empty
-        out.append(np.array(left.exterior.coords)[:-1] if seen else before)
-    return out
+    """Polygons of the elements that have met with a fate, each as it was when new: its points may have worn since."""
+    return polygons(first.elements["points [mm]"], first.elements["corners"][now.elements["fate"] == fate])
 
 
 def box(points: Array, margin: float | Array) -> Box:

@@ -1,10 +1,10 @@
-"""The shipped section that loses elements (case C5): what it loses in 60 min, and what mesh, evaluations and jumps change.
+"""The shipped section that loses elements (case C5): what it loses in 60 min, and how far that depends on its settings.
 
 - The scene as shipped, 60 min: it ends; wear takes at least ten elements' sides off, layer after layer; friction tears
-  elements out; the lip and the ridges beside it are worn most; what is lost by each cause adds up to the section's loss.
+  elements out; the lip and the ridges beside it are worn most; what each cause takes adds up to the section's loss.
 - Its first 4 min again with elements of half the side, with two and with eight evaluations a cycle instead of four, and
   with half the error that a jump may make: area lost in all and greatest depth over those of the scene as shipped, and
-  the share of the torn area. Only the area on the finer mesh has a bound that the task sets (10 %); for the rest, nobody
+  the share of the torn area. Only the area on the finer mesh has a bound that was asked for (10 %). For the rest nobody
   has derived a reference: the bounds are above what was measured, and say what the scene's choices are worth.
 
 Units: mm, N, MPa. Takes the better part of an hour.

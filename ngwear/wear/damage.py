@@ -60,8 +60,8 @@ class Stresses:
 class Criterion(abc.ABC):
     """A limit that an element bears; ``critical`` in the criterion's unit, > 0.
 
-    ``length`` is the material's: over what diameter stresses are averaged before they are compared [mm], > 0. Without it
-    each element's own mean counts, and finer elements, which see more of a stress peak, tear sooner.
+    ``length`` is the material's: over what diameter stresses are averaged before they are compared [mm], > 0. Without
+    it each element's own mean counts, and finer elements, which see more of a stress peak, tear sooner.
     """
 
     critical: float

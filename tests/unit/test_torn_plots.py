@@ -94,13 +94,13 @@ def test_kept_strokes_without_speed_are_called_by_distance(result):
     assert when(timeless, sections(timeless)[-1]) == "after 4 strokes, 2 m"
 
 
-def test_lost_elements_are_drawn_as_they_were(result):
-    """The face has receded since: what wear has taken before they were lost is not theirs, nor what it took later."""
+def test_lost_elements_are_drawn_as_they_were_when_new(result):
+    """The points that they share with living ones have receded since."""
     first, _, last = sections(result)
     torn = lost(first, last, Fate.TORN)
     assert len(torn) == 3
     for shape in torn:
-        assert np.ptp(shape, axis=0) == pytest.approx([SIDE, SIDE - WORN])
+        assert np.ptp(shape, axis=0) == pytest.approx([SIDE, SIDE])
     above = lost(first, last, Fate.DISTORTED)[0]
     assert above.min(axis=0) == pytest.approx([11 * SIDE, SIDE])
 
@@ -182,7 +182,7 @@ def test_principal_stress_for_its_criterion(result):
 
 
 def test_stacked_areas_are_the_series(result):
-    area, count = book_figure(result).axes
+    area, small, count = book_figure(result).axes
     below = np.zeros(6)
     for cause, stack in zip(AREAS, area.collections, strict=True):
         top = below + result.series[f"area lost by {cause} [mm^2]"]
@@ -192,6 +192,8 @@ def test_stacked_areas_are_the_series(result):
             assert (here.min(), here.max()) == pytest.approx((low, high))
         below = top
     assert area.lines[0].get_ydata() == pytest.approx(below), "the sum of the causes is what is lost in all"
+    for cause, line in zip(list(AREAS)[1:], small.lines, strict=True):
+        assert line.get_ydata() == pytest.approx(result.series[f"area lost by {cause} [mm^2]"])
     assert [line.get_ydata()[-1] for line in count.lines] == [0, 4, 8, 12]
 
 
