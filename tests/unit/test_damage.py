@@ -77,9 +77,7 @@ def test_unknown_criteria_and_impossible_values_are_refused():
         read_deactivation({"depth": 1.0, "damage": {"criterion": "hoop stress", "critical": 1.0}})
     with pytest.raises(SceneError, match=r"deactivation\.damage\.critical = 0\.0: must be greater than 0"):
         StrainEnergyDensity(critical=0.0)
-    with pytest.raises(
-        SceneError, match=r"deactivation\.damage\.length = 0\.0: must be greater than 0 mm, or"
-    ):
+    with pytest.raises(SceneError, match=r"deactivation\.damage\.length = 0\.0: must be greater than 0 mm, or"):
         StrainEnergyDensity(critical=1.0, length=0.0)
     with pytest.raises(SceneError, match=r"deactivation\.damage\.exponent = -1\.0: must be greater than 0"):
         Fatigue(critical=1.0, exponent=-1.0)
