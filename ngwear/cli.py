@@ -24,6 +24,7 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     run.add_argument("--resume", action="store_true", help="go on with the run in DIR")
     run.add_argument("--quiet", action="store_true", help="no progress bar")
+    run.add_argument("--alone", action="store_true", help="no coarser run beside it: the mesh's error is not estimated")
     run.set_defaults(do=_run)
     verify = commands.add_parser("verify", help="compare with references that others derived")
     verify.add_argument("cases", nargs="*", metavar="CASE")
@@ -81,9 +82,10 @@ def _run(options: argparse.Namespace) -> int:
 
         summary = run_pin(scene, **how)
     else:
+        from ngwear.companion import run_stated
         from ngwear.run import run
 
-        summary = run(scene, **how, throw=False).summary
+        summary = (run if options.alone else run_stated)(scene, **how, throw=False).summary
     if summary["status"] != COMPLETED:
         print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
         print(f"ngwear: what was computed until then is in {options.out}", file=sys.stderr)

@@ -53,6 +53,7 @@ def run(
     throw: bool = True,
     figures: bool = True,
     on_step: Callable[[State], None] | None = None,
+    errors: Callable[[Recorder, dict[str, Any]], None] | None = None,
 ) -> Result:
     """Run a scene to its end.
 
@@ -71,6 +72,8 @@ def run(
         Draw the figures into the folder at the end.
     on_step : callable or None
         Called with the state after mounting and after each accepted step.
+    errors : callable or None
+        Called with records and summary of a run that reached its end: it may state more errors there.
 
     Raises
     ------
@@ -111,6 +114,9 @@ def run(
     summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
+        if errors is not None and error is None:
+            errors(recorder, summary)
+            summary["wall time [s]"] = round(time.perf_counter() - wall, 3)
     if folder is not None:
         folder.finish(recorder, summary)
         if scene.save.vtk and state is not None:

@@ -185,12 +185,21 @@ def _in_processes(function: Any, points: list, waiting: Iterable[int], workers: 
 
 @contextmanager
 def _pool(workers: int) -> Iterator[Executor]:
-    """Spawned workers of one thread each: libraries read that from the environment as they load."""
+    """Spawned workers of one thread each."""
+    with (
+        one_thread(),
+        ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=end_with_parent) as pool,
+    ):
+        yield pool
+
+
+@contextmanager
+def one_thread() -> Iterator[None]:
+    """Let processes that begin within have one thread each: libraries read that from the environment as they load."""
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
     try:
-        with ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_end_with_parent) as pool:
-            yield pool
+        yield
     finally:
         for name, value in before.items():
             if value is None:
@@ -199,7 +208,7 @@ def _pool(workers: int) -> Iterator[Executor]:
                 os.environ[name] = value
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
     """Let a worker end when the process that feeds it is killed; else it would wait for work for ever."""
     parent = parent_process()
 
