@@ -14,5 +14,5 @@ def test_moment_of_a_rectangle_and_of_a_notched_one_by_hand():
 def test_moment_moves_with_the_polygon_and_turns_its_sign_with_the_direction():
     points = np.random.default_rng(4).normal(size=(9, 2))
     area = polygon_area(points)
-    assert polygon_moment(points + (3.0, 2.0)) == pytest.approx(polygon_moment(points) + 2.0 * area)
+    assert polygon_moment(points + np.array([3.0, 2.0])) == pytest.approx(polygon_moment(points) + 2.0 * area)
     assert polygon_moment(points[::-1]) == pytest.approx(-polygon_moment(points))
