@@ -168,7 +168,6 @@ class Recorder:
         cycle = [s.name for s in scene.program.cycle]
         unworn = self.unworn or scene.contour
         depth = depths(unworn, state.contour)
-        radius = _mean_radius(scene.contour, state.contour) if scene.axisymmetric else None
         ledger = state.ledger
         out: dict[str, Any] = {
             "status": status,
@@ -179,8 +178,8 @@ class Recorder:
             "worn area by the law [mm^2]": ledger.worn,
             "maximum depth [mm]": float(depth.max()),
         }
-        if radius is not None:
-            out["worn volume [mm^3]"] = 2 * np.pi * radius
+        if scene.axisymmetric:
+            out["worn volume [mm^3]"] = 2 * np.pi * ledger.moment
         for name in dict.fromkeys(scene.worn_edges):
             out[f"{name} depth [mm]"] = float(depth[unworn.on((name,))].max())
         if state.cells is not None:
@@ -231,17 +230,6 @@ class Recorder:
                     f"({column} {least:.2g}): waves would run along the surface; what is given is the steady state"
                 )
         return found
-
-
-def _mean_radius(before: Contour, after: Contour) -> float:
-    """First moment about the axis of the removed area [mm³]: times 2 pi it is the worn volume."""
-
-    def moment(points: Array) -> float:
-        x, y = points.T
-        x2, y2 = np.roll(x, -1), np.roll(y, -1)
-        return float(((x * y2 - x2 * y) * (y + y2)).sum() / 6)
-
-    return moment(before.points) - moment(after.points)
 
 
 def _deformed_mesh(state: Any, phase: int) -> dict[str, Array]:

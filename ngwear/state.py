@@ -62,6 +62,8 @@ class Ledger:
         int W dA by the law, as section area [mm²].
     removed : float
         Area taken off the outline's polygon [mm²].
+    moment : float
+        First moment of that area about y = 0 [mm³]: about the axis of a ring, 2 pi times it is the worn volume.
     area_error : float
         Sum of the steps' embedded errors of worn area [mm²].
     depth_error : float
@@ -76,6 +78,7 @@ class Ledger:
 
     worn: float = 0.0
     removed: float = 0.0
+    moment: float = 0.0
     area_error: float = 0.0
     depth_error: float = 0.0
     remesh_jump: float = 0.0

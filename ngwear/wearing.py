@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ngwear import counter_wear, deactivation
 from ngwear.errors import GeometryError, MeshError
-from ngwear.geometry.contour import Contour, polygon_area
+from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.lasting_slip import lasting
 from ngwear.remesh import remesh
@@ -170,6 +170,7 @@ class Wearing:
             points = receded(outline, share, scene.worn_edges, stage.body.now.inward())
             state.ledger.worn += float(share.sum())
             state.ledger.removed += outline.area - polygon_area(points)
+            state.ledger.moment += polygon_moment(outline.points) - polygon_moment(points)
             deactivation.follow(state, outline, points)
             return known
         new = recede(outline, share, scene.worn_edges)
@@ -180,6 +181,7 @@ class Wearing:
                 f"the outline lost {removed:.4g} mm² where the law wears {worn:.4g} mm²: healing took too much"
             )
         state.ledger.removed += removed
+        state.ledger.moment += polygon_moment(outline.points) - polygon_moment(new.points)
         _follow(state, outline, new)
         return known
 

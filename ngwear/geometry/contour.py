@@ -24,6 +24,14 @@ def polygon_area(points: Array) -> float:
     return float(0.5 * (x @ dy - y @ dx))
 
 
+def polygon_moment(points: Array) -> float:
+    """First moment ``int y dA`` of a closed polygon, points of shape (n, 2) [mm³]; 2 pi times it is a ring's volume."""
+    x, y = (points - points[0]).T
+    dx, dy = (np.roll(points, -1, axis=0) - points).T
+    height = points[:, 1] + 0.5 * dy + 0.5 * points[0, 1]  # 3/2 of the middle of each triangle with the first point
+    return float(((x * dy - y * dx) * height).sum() / 3)
+
+
 @dataclass(frozen=True)
 class Contour:
     """A closed, counter-clockwise outline; its polygon is the truth for area and worn area.

@@ -8,7 +8,8 @@ pressure over it has come near to uniform. The outline of the seal and its const
 (geometries/rod_seal), so that depths and pressures are bands, not values.
 
 Book-keeping is exact: the area taken off the outline against the law's, the area through remeshing, and
-the balance of the forces of rod, housing, fluid and hoop tension, relative to the largest of them.
+the balance of the forces of rod, housing, fluid and hoop tension, relative to the largest of them. The worn volume is
+k times force and distance; the sum takes each solve's force at its end for all of its strokes, and so errs by the step.
 """
 
 from __future__ import annotations
@@ -109,6 +110,13 @@ def run_case() -> tuple[list[Check], Result]:
     errors = summary["error estimates"]
     fall = summary["last outward rod peak pressure [MPa]"] / summary["first outward rod peak pressure [MPa]"]
     rows = result.recorder.rows
+    (rod,) = (c for c in scene.contacts if c.wears)
+    work = sum(
+        row["strokes in one solve [-]"] * stroke.travel * abs(row["rod force y [N]"])
+        for stroke in scene.program.cycle
+        for row in rows
+        if row["kind [-]"] == stroke.name
+    )
     kept = (0, *scene.save.strokes, scene.program.strokes)
     outwards = [s for s in result.recorder.snapshots if s.kind == "outward"]
     outwards = [next(s for s in reversed(outwards) if s.stroke == stroke) for stroke in kept]
@@ -150,6 +158,7 @@ def run_case() -> tuple[list[Check], Result]:
         check("pressure left of the lip, highest kept over first [-]", max(beside) / beside[0], 1.05, bound="above"),
         check("pressure left of the lip, last over highest kept [-]", beside[-1] / max(beside), 1.0, bound="below"),
         check("area removed against the law [-]", errors["area against the law [-]"], 0.0, 1e-3),
+        check("worn volume [mm³]", summary["worn volume [mm^3]"], rod.wear_rate.highest * work, 0.01),
         check("area changed by a remesh [-]", errors["area in a remesh [-]"], 0.0, 1e-6),
         check("sum of all forces over the largest [-]", balance, 0.0, 1e-6),
         check("strokes in which the seal leaks [-]", sum(r["leaks [-]"] for r in rows), 0),
