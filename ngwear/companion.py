@@ -1,10 +1,9 @@
 """What a run says of its own error: the same scene once more, coarser in every setting, and how far both are apart.
 
 A hierarchical estimate of what is read off, mesh and wear step together. With elements of twice the edge, and jumps
-that may err by 2^1.5 as much (the method is of second order, its tolerance the error itself), an error of order q in
-the edge is (companion - run) / (2^q - 1). The estimate takes q = 1.5, which is off by less than a factor of two where q
-lies between 1 and 2. It cannot see what both runs share: the outline's points, the laws and their constants, and errors
-that happen to cancel.
+that may err by twice as much, an error of first order doubles: what both runs differ by is the error of the finer one.
+An error of second order would be a third of that, one of order 1/2 two and a half times as large. It cannot see what both
+runs share: the outline's points, the laws and their constants, and errors that happen to cancel.
 """
 
 from __future__ import annotations
@@ -23,7 +22,7 @@ from ngwear.run import run as run_scene
 from ngwear.scene import Scene
 from ngwear.sweep import end_with_parent, one_thread
 
-COARSER, ORDER = 2.0, 1.5
+COARSER = 2.0
 FILE = "companion.json"  # in the run's folder: a resumed run finds it there
 WHOLE = {"maximum depth [mm]": "maximum depth [-]", "worn area [mm^2]": "worn area [-]"}
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
@@ -31,15 +30,15 @@ STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "fr
 
 
 def coarser(scene: Scene) -> Scene:
-    """The scene with elements of twice the edge and jumps that may err by ``2^1.5`` as much."""
-    accuracy, factor = scene.accuracy, COARSER**ORDER
+    """The scene with elements of twice the edge and jumps that may err by twice as much."""
+    accuracy = scene.accuracy
     coarse = replace(
         accuracy,
         patch=COARSER * accuracy.patch,
         coarse=COARSER * accuracy.coarse,
         mounting=max(accuracy.mounting, COARSER * accuracy.patch),
         stress_error=min(1.0, COARSER**2 * accuracy.stress_error),
-        wear_error=min(0.5, factor * accuracy.wear_error),
+        wear_error=min(0.5, COARSER * accuracy.wear_error),
     )
     return replace(scene, accuracy=coarse, save=replace(scene.save, strokes=(), vtk=False))
 
@@ -64,7 +63,7 @@ def estimates(mine: dict[str, dict[str, float]], other: dict[str, dict[str, floa
     for error, values in mine.items():
         scale = max((abs(v) for v in values.values()), default=0.0)
         off = max((abs(v - other[error].get(name, 0.0)) for name, v in values.items()), default=0.0)
-        out[error] = off / scale / (COARSER**ORDER - 1) if scale > 0 else 0.0
+        out[error] = off / scale if scale > 0 else 0.0
     return out
 
 
