@@ -2,8 +2,8 @@
 
 A hierarchical estimate of what is read off, mesh and wear step together. With elements of twice the edge, and jumps
 that may err by twice as much, an error of first order doubles: what both runs differ by is the error of the finer one.
-An error of second order would be a third of that, one of order 1/2 two and a half times as large. It cannot see what both
-runs share: the outline's points, the laws and their constants, and errors that happen to cancel.
+An error of second order would be a third of that, one of order 1/2 two and a half times as large. It cannot see what
+both runs share: the outline's points, the laws and their constants, and errors that happen to cancel.
 """
 
 from __future__ import annotations

@@ -56,7 +56,7 @@ def test_a_run_states_the_error_of_all_that_is_read_off(stated):
     off = abs(other.summary["maximum depth [mm]"] / result.summary["maximum depth [mm]"] - 1)
     assert errors["maximum depth [-]"] == pytest.approx(off)
     for name in ("worn area [-]", "peak pressure [-]", "contact width [-]", "friction force [-]"):
-        assert 0 < errors[name] < 0.2, name
+        assert 0 < errors[name] < 0.5, name
     assert result.summary["solves of the companion"] == other.summary["solves"]
     read = reading(other.summary, other.recorder.rows)
     assert set(read["peak pressure [-]"]) == {f"{kind}: cylinder peak pressure [MPa]" for kind in ("forth", "back")}
