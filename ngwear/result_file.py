@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -52,6 +53,8 @@ class ResultFile:
         Whether a law of friction or wear changes with the sliding distance.
     damage : tuple or None
         Name of the criterion that tears elements and its critical value; None without one.
+    errors : dict of str to float
+        What the run states of its errors, as in ``summary.json``.
     series : dict of array
         Columns as in ``series.csv``; row i belongs to snapshot i.
     snapshots : list of Snapshot
@@ -65,6 +68,7 @@ class ResultFile:
     remembers: bool
     drifts: bool
     damage: tuple[str, float] | None
+    errors: dict[str, float]
     series: dict[str, Array]
     snapshots: list[Snapshot]
 
@@ -125,6 +129,7 @@ def read_result(folder: Path | str) -> ResultFile:
                     if "damage criterion" in h5.attrs
                     else None
                 ),
+                errors=json.loads(h5.attrs.get("summary", "{}")).get("error estimates", {}),
                 series=get_series(h5),
                 snapshots=snapshots,
             )

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 MARGIN = 0.1  # mm, around the part
+COMPANIONS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run with a companion states
 
 
 def plot(folder: Path | str) -> list[Path]:
@@ -187,13 +188,19 @@ def _highest(snapshot: Snapshot) -> tuple[float, float]:
 
 
 def history_figure(result: ResultFile) -> Figure:
-    """Depth with its error band, peak pressure and contact width over strokes."""
+    """Depth, peak pressure and contact width over strokes, in bands of the errors that the run states.
+
+    A run with a companion knows the errors at its end, relative: they are drawn as such all along.
+    """
     series, kinds = result.series, result.kinds
     stroke = series["stroke [-]"]
     # Further strokes that were looked at where the outline was kept did not wear: their contact is another.
     worn = (series["strokes in one solve [-]"] > 0) | (stroke == 0)
     figure, axes = new_figure(3, (1.3, 1, 1), size=(8, 9))
     depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
+    stated = result.errors if COMPANIONS & result.errors.keys() else {}
+    if stated:
+        error = stated["maximum depth [-]"] * depth
     axes[0].plot(stroke, depth, color="k", lw=1.2, label="maximum")
     axes[0].fill_between(stroke, depth - error, depth + error, color="0.8", label="error estimate")
     for colour, name in zip(COLOURS, [c for c in series if c.startswith("depth at ")], strict=False):
@@ -205,6 +212,9 @@ def history_figure(result: ResultFile) -> Figure:
         for column in [c for c in series if c.endswith(ending)]:
             for colour, kind in zip(COLOURS, kinds, strict=False):
                 mine = worn & (series["kind [-]"] == kind)
+                off = stated.get(ending[: ending.index("[")] + "[-]", 0.0) * series[column][mine]
+                low, high = series[column][mine] - off, series[column][mine] + off
+                panel.fill_between(stroke[mine], low, high, color=colour, alpha=0.2, lw=0)
                 panel.plot(
                     stroke[mine],
                     series[column][mine],

@@ -92,3 +92,18 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     ]
     assert "peak pressure [-]" not in summary["error estimates"]
     assert np.isfinite(summary["error estimates"]["maximum depth [-]"])
+
+
+def test_pressures_are_drawn_in_the_band_of_their_error(stated):
+    folder, result = stated
+    from ngwear.plots.wear import history_figure
+    from ngwear.result_file import read_result
+
+    read = read_result(folder)
+    assert read.errors == result.summary["error estimates"]
+    depth, pressure, _ = history_figure(read).axes
+    forth = read.series["kind [-]"] == "forth"
+    top = (1 + read.errors["peak pressure [-]"]) * read.series["cylinder peak pressure [MPa]"][forth]
+    assert pressure.collections[0].get_paths()[0].vertices[:, 1].max() == pytest.approx(top.max())
+    deepest = 1e3 * (1 + read.errors["maximum depth [-]"]) * read.series["maximum depth [mm]"].max()
+    assert depth.collections[0].get_paths()[0].vertices[:, 1].max() == pytest.approx(deepest)

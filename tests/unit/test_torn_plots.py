@@ -73,6 +73,7 @@ def result():
         worn_edges=("bottom",),
         remembers=False,
         drifts=False,
+        errors={},
         damage=("tensile normal stress", 1.2),
         series=series,
         snapshots=shown,
