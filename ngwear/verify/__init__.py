@@ -45,6 +45,7 @@ CASES: dict[str, str] = {
     "shaft_on_plate": "ngwear.verify.shaft_on_plate",
     "rod_seal": "ngwear.verify.rod_seal",
     "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
+    "error_estimates": "ngwear.verify.error_estimates",
     "rod_seal_filled": "ngwear.verify.rod_seal_filled",
 }
 
