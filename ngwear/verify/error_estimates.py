@@ -1,9 +1,9 @@
 """The errors that runs state of themselves against true ones: the shipped scenes of wear by moved nodes.
 
-A run states what it differs by from a companion that is twice as coarse (``ngwear.companion``). True is what it differs
-by from a run with elements of half the edge and jumps that may err by half as much; where errors are of first order that
-is half of the whole error, so that an exact estimate would have an effectivity of 2. Wanted is 0.5 to 3. Below 0.1 %
-neither the estimate nor the reference can be told from the chance of where a new mesh falls: both count as at least that.
+A run states what it differs by from a companion that is twice as coarse (``ngwear.companion``). True is what it
+differs by from a run with elements of half the edge and jumps that may err by half as much; where errors are of first
+order that is half of the whole error, and an exact estimate would have an effectivity of 2. Wanted is 0.5 to 3. Below
+0.1 % neither of them can be told from the chance of where a new mesh falls: both count as at least that.
 
 Takes some minutes.
 """
