@@ -367,14 +367,18 @@ class Scene:
         strokes = self.program.cycle
         if len({math.copysign(1.0, stroke.direction) for stroke in strokes}) == 1:
             return False, "the sliding never turns round"
-        mu = max(
-            contact.friction_law.curve(stroke.speed).extremes(0.0, self.program.slid(self.program.strokes))[1]
-            for stroke in strokes
-        )
-        carried = 2 * mu * float(self.contour.points[:, 1].max() - self.contour.points[:, 1].min())
-        shortest = min(stroke.travel for stroke in strokes)
+        carried, shortest = self.elastic_slip(contact), min(stroke.travel for stroke in strokes)
         told = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
         return shortest < carried, told
+
+    def elastic_slip(self, contact: ContactSpec) -> float:
+        """How far at most a surface carries the part along before it slips [mm]: ``2 mu`` of its height, p about G."""
+        law = contact.friction_law
+        if law is None:
+            return 0.0
+        end = self.program.slid(self.program.strokes)
+        mu = max(law.curve(stroke.speed).extremes(0.0, end)[1] for stroke in self.program.cycle)
+        return 2 * mu * float(self.contour.points[:, 1].max() - self.contour.points[:, 1].min())
 
     @property
     def worn_edges(self) -> tuple[str, ...]:
