@@ -80,9 +80,9 @@ def press(scene: Scene, stage: Stage | None = None, *, on_mount: Callable[[float
     """
     tell = on_mount or (lambda fraction: None)
     try:
-        if stage is None or scene.deactivation is not None:
-            scene = _plain(scene)
-            stage = Stage(scene, unworn_body(scene))
+        if scene.deactivation is not None:
+            scene, stage = _plain(scene), None
+        stage = stage or Stage(scene, unworn_body(scene))
         mount(stage, tell)
         vector = stage.problem.state.vec.FV().NumPy()
         strips, states, kinds = [], [], _kinds(scene)

@@ -57,15 +57,13 @@ def _heat(scene: PinScene, assumed: Assumed) -> Verdict:
     matters: bool | None = found > heat.LIMIT
     words = (
         f"estimated +{found:.2g} K of flash temperature, {'above' if matters else 'below'} the {heat.LIMIT:g} K that "
-        "shift rubber's stiffness and losses: mu p v on a disc that moves over the rubber and stands on the steel ball, "
-        "both equally hot (Tian and Kennedy; Archard)"
+        "shift rubber's stiffness and losses: mu p v on a disc that moves over the rubber and stands on the steel "
+        "ball, both equally hot (Tian and Kennedy; Archard)"
     )
     if not matters and found > WARM:
         matters = None
-        words += (
-            f". But {power:.2g} W at the fastest, and the rubber's own losses, warm pin and track turn by turn: what "
-        )
-        words += "cools them decides, and no scene tells that"
+        words += f". But {power:.2g} W at the fastest and the rubber's own losses warm pin and track turn by turn: "
+        words += "what cools them decides, and no scene tells that"
     return Verdict(words=words, matters=matters, numbers={k: v for k, v in numbers.items() if math.isfinite(v)})
 
 
