@@ -50,9 +50,7 @@ def test_criteria_by_hand(cauchy, principal):
 def test_means_over_a_length_by_hand():
     """Four elements in a row, 1 apart, the last of three times the area: neighbours count within a length of 2."""
     centres, areas = np.array([(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]), np.array([1.0, 1.0, 1.0, 3.0])
-    stresses = Stresses(
-        np.array([[4.0, 0, 0], [1.0, 0, 3.0], [1.0, 0, 0], [5.0, 2.0, 0]]), np.array([1.0, 3.0, 2.0, 6.0])
-    )
+    stresses = Stresses(np.array([[4.0, 0, 0], [1.0, 0, 3.0], [1.0, 0, 0], [5.0, 2.0, 0]]), np.array([1.0, 3.0, 2.0, 6.0]))
     wide = stresses.averaged(centres, areas, 2.0)
     np.testing.assert_allclose(wide.cauchy[:, 0], [5 / 2, 6 / 3, 17 / 5, 16 / 4])
     np.testing.assert_allclose(wide.cauchy[:, 2], [3 / 2, 3 / 3, 3 / 5, 0.0])
@@ -77,9 +75,7 @@ def test_unknown_criteria_and_impossible_values_are_refused():
         read_deactivation({"depth": 1.0, "damage": {"criterion": "hoop stress", "critical": 1.0}})
     with pytest.raises(SceneError, match=r"deactivation\.damage\.critical = 0\.0: must be greater than 0"):
         StrainEnergyDensity(critical=0.0)
-    with pytest.raises(
-        SceneError, match=r"deactivation\.damage\.length = 0\.0: must be greater than 0 mm, or left out"
-    ):
+    with pytest.raises(SceneError, match=r"deactivation\.damage\.length = 0\.0: must be greater than 0 mm, or left out"):
         StrainEnergyDensity(critical=1.0, length=0.0)
     with pytest.raises(SceneError, match=r"deactivation\.damage\.exponent = -1\.0: must be greater than 0"):
         Fatigue(critical=1.0, exponent=-1.0)
@@ -257,9 +253,7 @@ def test_jumps_tear_what_single_cycles_tear():
 def test_in_a_jump_an_element_is_torn_at_most_one_hundredth_of_the_program_too_late():
     """Hardly any wear: what a cycle uses up of the most strained element stays as it is."""
     usage, cycles = 1 / 210.5, 400
-    tiring = replace(
-        scene("implicit", damage=Fatigue(critical=1.0, exponent=2.0)), wear=Wear(step="jump", remesh="never")
-    )
+    tiring = replace(scene("implicit", damage=Fatigue(critical=1.0, exponent=2.0)), wear=Wear(step="jump", remesh="never"))
     (spec,) = tiring.contacts
     tiring = replace(tiring, contacts=(replace(spec, specific_wear_rate=1e-9),))
     once = Stepper(replace(tiring, program=replace(tiring.program, strokes=2)))
