@@ -130,7 +130,7 @@ def _explain(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from ngwear.absent import Assumed
-    from ngwear.explain_text import lines
+    from ngwear.explaining.text import lines
     from ngwear.scenefile import read_scene
     from ngwear.sliding.scene import PinScene
 

@@ -15,7 +15,7 @@ from ngwear.wear.deactivate import Deactivation
 
 if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
     from ngwear.equilibrium.problem import Problem
-    from ngwear.pressing import Pressing
+    from ngwear.explaining.pressing import Pressing
     from ngwear.stage import Stage
 
 
@@ -39,10 +39,10 @@ def explain(
     MeshError
         If the section cannot be meshed.
     """
-    from ngwear.costs import costs
-    from ngwear.left_out import left_out
+    from ngwear.explaining.costs import costs
+    from ngwear.explaining.left_out import left_out
+    from ngwear.explaining.pressing import press
     from ngwear.mounting import unworn_body
-    from ngwear.pressing import press
     from ngwear.stage import Stage
 
     assumed = assumed or Assumed()
@@ -135,8 +135,8 @@ def solver_in_words(problem: Problem, unsymmetric: Sequence[str]) -> str:
 
 def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
     """Memory of what effects keep from step to step [MB], without their share of the matrix."""
-    from ngwear.costs import MEGABYTE
-    from ngwear.pressing import history_points
+    from ngwear.explaining.costs import MEGABYTE
+    from ngwear.explaining.pressing import history_points
 
     strokes, outline = len(scene.program.cycle), len(stage.body.contour)
     found = {}

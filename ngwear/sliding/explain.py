@@ -19,8 +19,8 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
     assumed : Assumed or None
         Constants that the scene does not give.
     """
-    from ngwear.costs import MEGABYTE, costs
     from ngwear.explain import solver_in_words
+    from ngwear.explaining.costs import MEGABYTE, costs
     from ngwear.sliding.pin import PinStage, coarsened
 
     pin, assumed = scene.pin, assumed or Assumed()

@@ -1,7 +1,7 @@
 """What each effect brings, and that a scene without it pays nothing for it: unknowns, memory, assembly, total time.
 
-A sheet under a roller is mounted and slid to and fro, once with an effect and once without. The one without is asked for
-in two processes: one never had the effect, the other ran the scene with the effect and then took it out
+A sheet under a roller is mounted and slid to and fro, once with an effect and once without. The one without is asked
+for in two processes: one never had the effect, the other ran the scene with the effect and then took it out
 (``dataclasses.replace``). They run in turn, A B B A ..., each on one thread.
 
 Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]

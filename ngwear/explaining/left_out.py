@@ -7,10 +7,10 @@ from collections.abc import Callable
 
 from ngwear.absent import Assumed, Verdict, adhesion, film, heat, inertia, onset, relaxation
 from ngwear.drift import friction_range
+from ngwear.explaining.pressing import Pressing, Strip
+from ngwear.explaining.warming import warming
 from ngwear.materials.library import FILLED_ARMS, FILLED_LONG_TERM, FILLED_TIMES
-from ngwear.pressing import Pressing, Strip
 from ngwear.scene import Scene
-from ngwear.warming import warming
 
 SHARE = 0.1  # of a load or a width: from which on it counts
 RELAXED = 0.05  # of the stiffness

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ngwear.absent import Assumed, heat
-from ngwear.pressing import Strip
+from ngwear.explaining.pressing import Strip
 from ngwear.scene import Scene
 from ngwear.surfaces import Cylinder, Plane
 
