@@ -198,8 +198,8 @@ def _inertia(scene: Scene, assumed: Assumed) -> Verdict:
     matters = mach > inertia.LIMIT or turning > inertia.SLOW
     words = (
         f"rho v²/G = {mach:.2g} (counts from {inertia.LIMIT:g} on), and a shear wave crosses the section in "
-        f"{turning:.2g} of the shortest stroke (from {inertia.SLOW:g} on): {'it counts' if matters else 'neither'}. "
-        "Vibrations that friction itself excites are another matter"
+        f"{turning:.2g} of the shortest stroke (counts from {inertia.SLOW:g} on): "
+        f"{'it matters' if matters else 'negligible'}. Vibrations that friction itself excites are another matter"
     )
     numbers |= {"rho v²/G [-]": mach, "time of a shear wave through the section over the shortest stroke [-]": turning}
     return Verdict(words=words, matters=matters, numbers=numbers)
