@@ -2,8 +2,8 @@
 
 A sheet under a roller is mounted and slid to and fro, once with an effect and once without. The one without is asked
 for in two processes: one never had the effect, the other ran the scene with the effect and then took it out
-(``dataclasses.replace``). They run in turn, A B B A ..., each on one thread. Printed are CPU times, medians of the rounds,
-and the ratio of the least total times, with the quartiles of the ratios of each round.
+(``dataclasses.replace``). They run in turn, A B B A ..., each on one thread. Printed are CPU times, medians of the
+rounds, and the ratio of the least total times, with the quartiles of the ratios of each round.
 
 Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
        python price_of_absence.py --subject never | removed EFFECT
