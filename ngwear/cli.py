@@ -33,6 +33,13 @@ def _parser() -> argparse.ArgumentParser:
     explain = commands.add_parser("explain", help="say what a scene simulates and what it leaves out")
     explain.add_argument("scene", type=Path, metavar="SCENE.toml")
     explain.add_argument("--json", action="store_true")
+    explain.add_argument(
+        "--assume",
+        nargs="+",
+        default=(),
+        metavar="NAME=VALUE",
+        help="constants that scenes do not give, such as oil_viscosity=1e-7 (MPa s); a wrong name lists all",
+    )
     explain.set_defaults(do=_explain)
     plot = commands.add_parser("plot", help="draw the figures of a run again")
     plot.add_argument("folder", type=Path, metavar="DIR")
@@ -122,26 +129,25 @@ def _verify(options: argparse.Namespace) -> int:
 
 
 def _explain(options: argparse.Namespace) -> int:
+    from tqdm import tqdm
+
+    from ngwear.absent import Assumed
+    from ngwear.explaining.text import lines
     from ngwear.scenefile import read_scene
     from ngwear.sliding.scene import PinScene
 
-    scene = read_scene(options.scene)
+    scene, assumed = read_scene(options.scene), Assumed().replaced(options.assume)
     if isinstance(scene, PinScene):
-        from ngwear.sliding.explain import explain_pin as explain
+        from ngwear.sliding.explain import explain_pin
+
+        found = explain_pin(scene, assumed=assumed)
     else:
         from ngwear.explain import explain
 
-    found = explain(scene)
-    if options.json:
-        print(json.dumps(found, indent=2))
-        return OK
-    for name, value in found.items():
-        if isinstance(value, dict):
-            print(f"{name}:")
-            for key, item in value.items():
-                print(f"  {key:55s} {item:.4g}" if isinstance(item, float) else f"  {key:55s} {item}")
-        else:
-            print(f"{name}: {', '.join(value) if isinstance(value, list) else value}")
+        shown = sys.stderr.isatty()
+        with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
+            found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
+    print(json.dumps(found, indent=2) if options.json else "\n".join(lines(found)))
     return OK
 
 

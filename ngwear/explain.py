@@ -1,40 +1,94 @@
-"""What a scene simulates, what it leaves out, and the numbers that tell whether that matters."""
+"""What a scene simulates and what that takes, what it leaves out, and the numbers that tell whether that matters."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, Any
 
+from ngwear.absent import Assumed
 from ngwear.drift import friction_range
 from ngwear.laws import Constant
 from ngwear.scene import ContactSpec, Scene
 from ngwear.wear.archard import critical_distance
 from ngwear.wear.deactivate import Deactivation
 
+if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
+    from ngwear.equilibrium.problem import Problem
+    from ngwear.explaining.pressing import Pressing
+    from ngwear.stage import Stage
 
-def explain(scene: Scene) -> dict[str, Any]:
-    """Describe a scene: effects, unknowns on the mounting mesh, solver, dimensionless numbers.
+
+def explain(
+    scene: Scene, *, assumed: Assumed | None = None, on_mount: Callable[[float], None] | None = None
+) -> dict[str, Any]:
+    """Describe a scene: each effect and what it brings, the solver, and each effect that is left out and its numbers.
+
+    The part is mounted once on a coarse mesh for its contact pressures; no memory, no wear.
+
+    Parameters
+    ----------
+    scene : Scene
+    assumed : Assumed or None
+        Constants that the scene does not give.
+    on_mount : callable or None
+        Called with the fraction of the mounting that is done.
 
     Raises
     ------
     MeshError
         If the section cannot be meshed.
     """
-    from ngwear.equilibrium.linear import has_pardiso
+    from ngwear.explaining.costs import costs
+    from ngwear.explaining.left_out import left_out
+    from ngwear.explaining.pressing import press
     from ngwear.mounting import unworn_body
     from ngwear.stage import Stage
 
+    assumed = assumed or Assumed()
     stage = Stage(scene, unworn_body(scene))
     problem, material = stage.problem, scene.material
+    brought = costs(problem, _owners(scene, problem.names))
+    pressing = press(scene, stage, on_mount=on_mount)
+    absent = left_out(scene, pressing, remembers=stage.remembers, assumed=assumed)
+    present = _present(scene)
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
     critical = critical_distance(scene.accuracy.patch, rate, material.plane_strain_modulus)
-    travel = max(s.travel for s in scene.program.cycle)
-    present = {"hyperelasticity": type(material).__name__}
+    return {
+        "scene": scene.name,
+        "kind": "axisymmetric" if scene.axisymmetric else "plane strain",
+        "effects": present,
+        "left out": list(absent),
+        "unknowns on the mounting mesh": {
+            name: problem.part(name).stop - problem.part(name).start for name in problem.names
+        },
+        "unknowns": {name: brought.unknowns.get(name, 0) for name in present},
+        "matrix entries": {name: brought.entries.get(name, 0) for name in present},
+        "memory [MB]": {name: brought.memory.get(name, 0.0) for name in present} | _kept(scene, stage, pressing),
+        "solver": solver_in_words(problem, _unsymmetric(scene)),
+        "numbers": {
+            "K/G [-]": material.bulk_modulus / material.shear_modulus,
+            "highest sealed pressure / G [-]": max(s.pressure for s in scene.program.cycle) / material.shear_modulus,
+            "longest stroke / critical explicit wear distance [-]": max(s.travel for s in scene.program.cycle)
+            / critical,
+            **_memory_numbers(scene),
+        },
+        **({"arms of the memory": _arms(scene)} if scene.prony is not None else {}),
+        "absent": {name: verdict.as_dict() for name, verdict in absent.items()},
+        "assumed": assumed.told(),
+    }
+
+
+def _present(scene: Scene) -> dict[str, str]:
+    """Each effect that the scene has, in words."""
+    present = {"hyperelasticity": type(scene.material).__name__}
     present |= {f"contact '{c.name}'": f"edges {', '.join(c.edges)}" for c in scene.contacts}
     present |= {f"friction at '{c.name}'": _friction_in_words(scene, c) for c in scene.contacts if c.friction_law}
     if scene.fluid is not None:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
-    if rate > 0:
+        if not any(stroke.pressure for stroke in scene.program.cycle):
+            present["fluid pressure"] += "; no stroke has a pressure: without [fluid] the result is the same, for less"
+    if scene.worn_edges:
         laws = [c.wear_law.words if c.wear_law else "Archard" for c in scene.contacts if c.wears]
         how = f"{scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
         present["wear"] = f"{' / '.join(dict.fromkeys(laws))}, {how}"
@@ -48,30 +102,51 @@ def explain(scene: Scene) -> dict[str, Any]:
     }
     if scene.prony is not None:
         present["memory"] = _memory_in_words(scene)
-    left_out = ["heat", "adhesion", "inertia", "fluid film"]
-    if not stage.remembers:
-        left_out.insert(0, "stick-slip")
-    if scene.prony is None:
-        left_out.insert(0, "viscosity")
-    return {
-        "scene": scene.name,
-        "kind": "axisymmetric" if scene.axisymmetric else "plane strain",
-        "effects": present,
-        "left out": left_out,
-        "unknowns on the mounting mesh": {
-            name: problem.part(name).stop - problem.part(name).start for name in problem.names
-        },
-        "solver": "LDLT (symmetric terms only)"
-        if problem.symmetric
-        else f"LU, {'pardiso' if has_pardiso() else 'umfpack'} (friction or a follower pressure is unsymmetric)",
-        "numbers": {
-            "K/G [-]": material.bulk_modulus / material.shear_modulus,
-            "highest sealed pressure / G [-]": max(s.pressure for s in scene.program.cycle) / material.shear_modulus,
-            "longest stroke / critical explicit wear distance [-]": travel / critical,
-            **_memory_numbers(scene),
-        },
-        **({"arms of the memory": _arms(scene)} if scene.prony is not None else {}),
-    }
+    return present
+
+
+def _owners(scene: Scene, names: Sequence[str]) -> dict[str, str]:
+    """The effect that brings each unknown."""
+    owners = dict.fromkeys(names, "hyperelasticity")
+    for c in scene.contacts:
+        owners |= {
+            name: f"contact '{c.name}'" for name in (f"{c.name} pressure", f"{c.name} approach") if name in names
+        }
+    for c in scene.contacts:
+        owners |= {name: f"friction at '{c.name}'" for name in names if name.startswith(f"{c.name} traction ")}
+    return owners
+
+
+def _unsymmetric(scene: Scene) -> list[str]:
+    """Effects whose tangent is not symmetric."""
+    found = [f"friction at '{c.name}'" for c in scene.contacts if c.friction_law is not None]
+    return found + ["fluid pressure"] * (scene.fluid is not None)
+
+
+def solver_in_words(problem: Problem, unsymmetric: Sequence[str]) -> str:
+    """Which direct solver a problem takes, and why."""
+    from ngwear.equilibrium.linear import has_pardiso
+
+    if problem.symmetric:
+        return f"LDLT, {'pardiso' if has_pardiso() else 'sparsecholesky'} (symmetric terms only)"
+    name = "pardiso" if has_pardiso() else "umfpack"
+    return f"LU, {name} (unsymmetric: {', '.join(unsymmetric)}; without, LDLT would keep half the factors)"
+
+
+def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
+    """Memory of what effects keep from step to step [MB], without their share of the matrix."""
+    from ngwear.explaining.costs import MEGABYTE
+    from ngwear.explaining.pressing import history_points
+
+    strokes, outline = len(scene.program.cycle), len(stage.body.contour)
+    found = {}
+    if scene.worn_edges:  # area over way, twice, and depth, of each contact and stroke; rates of the states
+        sizes = 3 * strokes * len(scene.contacts) * outline + strokes * stage.problem.space.ndof
+        found["wear"] = 8 * sizes / MEGABYTE
+    if scene.prony is not None:
+        points = history_points(stage, pressing.states) if scene.arms is not None else 0
+        found["memory"] = 8 * 4 * points * (len(scene.folding.kept.times) + strokes) / MEGABYTE
+    return found
 
 
 def _deactivation_in_words(deactivation: Deactivation) -> str:

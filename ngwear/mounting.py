@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ngwear import deactivation
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.body import Body
-from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.sizing import smoothed
 from ngwear.refinement import mounting_field
 from ngwear.scene import Scene
 from ngwear.stage import Stage
 from ngwear.state import State
+
+if TYPE_CHECKING:
+    from ngwear.geometry.element_body import ElementBody
 
 log = logging.getLogger(__name__)
 
@@ -23,6 +24,8 @@ log = logging.getLogger(__name__)
 def unworn_body(scene: Scene) -> Body | ElementBody:
     """The unworn section, meshed for mounting."""
     if scene.deactivation is not None:
+        from ngwear import deactivation
+
         return deactivation.element_body(scene)
     return Body(smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch), mounting_field(scene))
 

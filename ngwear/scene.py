@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from ngwear.contradictions import refuse_in_contact, refuse_in_scene
 from ngwear.errors import require
 from ngwear.geometry.contour import Contour
 from ngwear.laws import FrictionLaw, WearLaw, WearRate, law_of
@@ -65,29 +66,10 @@ class ContactSpec:
             require(rate >= 0, f"{place}.specific_wear_rate", rate, "must be at least 0 mm²/N")
         counter = self.counter_wear_rate
         require(counter >= 0, f"{place}.counter_wear_rate", counter, "must be at least 0 mm²/N")
-        remedy = "give the part a specific_wear_rate as well: its error chooses the jumps"
-        require(counter == 0 or self.wears, f"{place}.counter_wear_rate", counter, remedy)
-        require(
-            self.slides or self.sticks is not False,
-            f"{place}.sticks",
-            self.sticks,
-            "a surface that stands still (slides = false) cannot be in full sliding: leave sticks out",
-        )
-        require(
-            self.slides or not self.wears,
-            f"{place}.specific_wear_rate",
-            self.specific_wear_rate,
-            "a surface that stands still (slides = false) wears nothing: leave its wear rate out",
-        )
-        require(
-            self.wear_law is None or not self.wear_law.needs_friction or self.friction_law is not None,
-            f"{place}.wear_law",
-            self.wear_law,
-            "wears by the work of friction: give the contact a friction",
-        )
         require(
             self.force is None or self.force > 0, f"{place}.force", self.force, "must be greater than 0 (it presses)"
         )
+        refuse_in_contact(self)
 
     @property
     def friction_law(self) -> FrictionLaw | None:
@@ -269,44 +251,9 @@ class Scene:
         if self.axisymmetric:
             lowest = float(self.contour.points[:, 1].min())
             require(lowest > 0, "contour", lowest, "an axisymmetric section must lie above the axis: radii > 0 mm")
-        for stroke in self.program.cycle:
-            require(
-                stroke.pressure == 0 or self.fluid is not None,
-                f"program.stroke '{stroke.name}'.pressure",
-                stroke.pressure,
-                "a sealed pressure needs a [fluid] table that says which edges it may reach",
-            )
-            place = f"program.stroke '{stroke.name}'.speed"
-            known_speed = stroke.speed is not None
-            require(
-                self.prony is None or known_speed,
-                place,
-                stroke.speed,
-                "rubber with memory needs the stroke's speed in mm/s",
-            )
-            for contact in self.contacts:
-                law = contact.friction_law
-                require(
-                    law is None or not law.depends_on_speed or known_speed,
-                    place,
-                    stroke.speed,
-                    f"the friction of contact '{contact.name}' depends on speed: give the stroke's in mm/s",
-                )
+        refuse_in_scene(self)
         for contact in self.contacts:
             self._check_side(contact)
-        if self.deactivation is not None:
-            self._check_deactivation()
-
-    def _check_deactivation(self) -> None:
-        remedy = "must be 'never' in a scene that deactivates elements: its mesh loses them and is not made anew"
-        require(self.wear.remesh == "never", "wear.remesh", self.wear.remesh, remedy)
-        remedy = "elements can be deactivated in rubber without memory only: leave one of both out"
-        require(self.prony is None, "material.prony", self.prony, remedy)
-        remedy = "at least one contact must wear: below its edges the layers of elements lie"
-        require(bool(self.worn_edges), "contact.specific_wear_rate", 0.0, remedy)
-        thinnest = self.accuracy.patch
-        remedy = f"must be at least one element thick (accuracy.patch = {thinnest:g} mm)"
-        require(self.deactivation.depth >= thinnest, "deactivation.depth", self.deactivation.depth, remedy)
 
     def _check_side(self, contact: ContactSpec) -> None:
         """A rigid body that swallows the part, or that it can never reach, is on the wrong side."""
@@ -367,14 +314,18 @@ class Scene:
         strokes = self.program.cycle
         if len({math.copysign(1.0, stroke.direction) for stroke in strokes}) == 1:
             return False, "the sliding never turns round"
-        mu = max(
-            contact.friction_law.curve(stroke.speed).extremes(0.0, self.program.slid(self.program.strokes))[1]
-            for stroke in strokes
-        )
-        carried = 2 * mu * float(self.contour.points[:, 1].max() - self.contour.points[:, 1].min())
-        shortest = min(stroke.travel for stroke in strokes)
+        carried, shortest = self.elastic_slip(contact), min(stroke.travel for stroke in strokes)
         told = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
         return shortest < carried, told
+
+    def elastic_slip(self, contact: ContactSpec) -> float:
+        """How far at most a surface carries the part along before it slips [mm]: ``2 mu`` of its height, p about G."""
+        law = contact.friction_law
+        if law is None:
+            return 0.0
+        end = self.program.slid(self.program.strokes)
+        mu = max(law.curve(stroke.speed).extremes(0.0, end)[1] for stroke in self.program.cycle)
+        return 2 * mu * float(self.contour.points[:, 1].max() - self.contour.points[:, 1].min())
 
     @property
     def worn_edges(self) -> tuple[str, ...]:

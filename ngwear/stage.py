@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
@@ -9,19 +11,19 @@ from numpy.typing import NDArray
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.effects.fluid_pressure import FluidPressure
-from ngwear.effects.friction import Friction, FullSliding
-from ngwear.effects.pressure_wear import PressureWear
-from ngwear.effects.stick_slip import StickSlip
-from ngwear.effects.stroke_memory import StrokeMemory
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.errors import SceneError
-from ngwear.fields.background import Background
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.program import Stroke
 from ngwear.scene import ContactSpec, Scene
 from ngwear.surfaces import WornProfile
+
+if TYPE_CHECKING:  # an effect that the scene does not list is not even imported
+    from ngwear.effects.fluid_pressure import FluidPressure
+    from ngwear.effects.friction import Friction
+    from ngwear.effects.stroke_memory import StrokeMemory
+    from ngwear.fields.background import Background
 
 Array = NDArray[np.float64]
 
@@ -60,24 +62,25 @@ class Stage:
         self.frictions: dict[str, Friction] = {}
         for spec in scene.contacts:
             if spec.friction_law is not None:
-                contact, law, speed = self.contacts[spec.name], spec.friction_law, scene.program.cycle[0].speed
-                if scene.may_stick(spec):
-                    self.frictions[spec.name] = StickSlip(contact, law, speed=speed)
-                else:
-                    stepped = scene.deactivation is not None
-                    self.frictions[spec.name] = FullSliding(contact, law, speed=speed, stepped=stepped)
+                self.frictions[spec.name] = self._friction(spec)
             if spec.wears and spec.wear_law is not None:
+                from ngwear.effects.pressure_wear import PressureWear
+
                 mu = self.frictions[spec.name].coefficient if spec.name in self.frictions else None
                 wear = PressureWear(spec.wear_law, modulus=modulus, coefficient=mu)
                 self.contacts[spec.name].pressure_wear = wear
-        self.fluid = None
+        self.fluid: FluidPressure | None = None
         if scene.fluid is not None:
+            from ngwear.effects.fluid_pressure import FluidPressure
+
             self.fluid = FluidPressure(scene.fluid.edges, scene.fluid.inlet, tuple(self.contacts.values()))
         terms = [self.elasticity, *self.contacts.values(), *self.frictions.values()]
         if self.fluid is not None:
             terms.append(self.fluid)
-        self.memory = None
+        self.memory: StrokeMemory | None = None
         if background is not None:
+            from ngwear.effects.stroke_memory import StrokeMemory
+
             self.memory = StrokeMemory(rubber, scene.arms, background)
             terms.append(self.memory)
         self.problem = Problem(
@@ -88,6 +91,18 @@ class Stage:
             order=scene.accuracy.order,
         )
 
+    def _friction(self, spec: ContactSpec) -> Friction:
+        """The friction of a contact that has a law of it."""
+        scene, contact = self.scene, self.contacts[spec.name]
+        speed = scene.program.cycle[0].speed
+        if scene.may_stick(spec):
+            from ngwear.effects.stick_slip import StickSlip
+
+            return StickSlip(contact, spec.friction_law, speed=speed)
+        from ngwear.effects.friction import FullSliding
+
+        return FullSliding(contact, spec.friction_law, speed=speed, stepped=scene.deactivation is not None)
+
     def stroke_loads(self, stroke: Stroke) -> dict[str, float]:
         """Loads of a stroke: every surface in its place, sliding in the stroke's direction, under its pressure."""
         loads: dict[str, float] = {}
@@ -96,7 +111,7 @@ class Stage:
             loads |= dict.fromkeys(contact.loads, 0.0 if spec.force is None else spec.force)
             if spec.name in self.frictions:
                 friction = self.frictions[spec.name]
-                way = stroke.travel if isinstance(friction, StickSlip) else 1.0
+                way = stroke.travel if friction.remembers else 1.0
                 loads |= dict.fromkeys(friction.loads, stroke.direction * way if spec.slides else 0.0)
         if self.fluid is not None:
             loads |= dict.fromkeys(self.fluid.loads, stroke.pressure)
@@ -105,7 +120,7 @@ class Stage:
     @property
     def remembers(self) -> bool:
         """Whether friction sticks, so that a stroke depends on where the one before it ended."""
-        return any(isinstance(friction, StickSlip) for friction in self.frictions.values())
+        return any(friction.remembers for friction in self.frictions.values())
 
     def begin(self, vector: Array) -> None:
         """Let a stroke begin where another has ended: slip is counted from that state."""
@@ -113,13 +128,13 @@ class Stage:
         keep = state.copy()
         state[:] = vector
         for friction in self.frictions.values():
-            if isinstance(friction, StickSlip):
+            if friction.remembers:
                 friction.begin()
         state[:] = keep
 
     def shares(self, stroke: Stroke) -> dict[str, Array]:
         """What the contact's nodes slip in the stroke just solved over its travel [-], of each friction that sticks."""
-        sticking = {name: f for name, f in self.frictions.items() if isinstance(f, StickSlip)}
+        sticking = {name: f for name, f in self.frictions.items() if f.remembers}
         return {name: self.contacts[name].edges_to_nodes(f.slid()) / stroke.travel for name, f in sticking.items()}
 
     def set_shares(self, shares: dict[str, Array] | None) -> None:
@@ -168,7 +183,7 @@ class Stage:
         """
         loads = self.stroke_loads(self.scene.program.cycle[0])
         for friction in self.frictions.values():
-            if isinstance(friction, StickSlip) or self.scene.deactivation is not None:
+            if friction.remembers or self.scene.deactivation is not None:
                 loads |= dict.fromkeys(friction.loads, 0.0)
         if self.fluid is not None:
             loads |= dict.fromkeys(self.fluid.loads, 0.0)
@@ -232,7 +247,7 @@ class Stage:
 
     def margins(self) -> dict[str, float]:
         """How far each contact that slides in full is from waves that grow along it [-], see ``Ripples.margin``."""
-        return {name: f.margin() for name, f in self.frictions.items() if isinstance(f, FullSliding)}
+        return {name: f.margin() for name, f in self.frictions.items() if not f.remembers}
 
     def forces(self) -> dict[str, Array]:
         """Resultants on the part in the present state, (x, y) [N, or N/mm in plane strain].

@@ -4,20 +4,22 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.cycle_memory import CycleMemory
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.equilibrium.stepping import Work
-from ngwear.fields.background import Background
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.contour import Contour
 from ngwear.stage import Stage
 from ngwear.surfaces import WornProfile
 from ngwear.wear.control import JumpControl
+
+if TYPE_CHECKING:  # no memory, no import of it
+    from ngwear.cycle_memory import CycleMemory
+    from ngwear.fields.background import Background
 
 Array = NDArray[np.float64]
 

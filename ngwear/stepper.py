@@ -8,20 +8,17 @@ import warnings
 from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import counter_wear, deactivation
-from ngwear.cycle_memory import CycleMemory
 from ngwear.drift import steady_cycles
 from ngwear.equilibrium.carry import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
-from ngwear.fields.background import Background
 from ngwear.geometry.body import Body
-from ngwear.lasting_slip import lasting
 from ngwear.mounting import mount, refuse_idle_contacts, unworn_body
 from ngwear.program import Stroke
 from ngwear.refinement import outgrown, wanted_size
@@ -55,6 +52,11 @@ class Stepper:
     def __init__(self, scene: Scene, *, on_mount: Callable[[float], None] | None = None) -> None:
         self.scene = scene
         self.on_mount = on_mount or (lambda fraction: None)
+        self._losses: ModuleType | None = None
+        if scene.deactivation is not None:
+            from ngwear import deactivation
+
+            self._losses = deactivation
         self._warn_if_unstable()
 
     def _warn_if_unstable(self) -> None:
@@ -88,8 +90,8 @@ class Stepper:
         problem = stage.problem
         phases = len(scene.program.cycle)
         state.work.add(mount(stage, self.on_mount))
-        if scene.deactivation is not None:
-            deactivation.begin(state)
+        if self._losses is not None:
+            self._losses.begin(state)
         for i, stroke in enumerate(scene.program.cycle):
             stage.begin(problem.state.vec.FV().NumPy())
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
@@ -124,6 +126,9 @@ class Stepper:
 
     def _remember(self, state: State) -> None:
         """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
+        from ngwear.cycle_memory import CycleMemory
+        from ngwear.fields.background import Background
+
         scene = self.scene
         (first, *_), phase = scene.program.cycle, state.phases[0]
         body = state.stage.body
@@ -237,7 +242,7 @@ class Stepper:
             while tears:
                 wearing = Wearing.begin(state, i, sliding, later=later)
                 iterations += self._solve_phase(state, i, cycle[i], sliding, plan=plan)
-                tears = self.scene.deactivation is not None and deactivation.tear(state, outline, repeats)
+                tears = self._losses is not None and self._losses.tear(state, outline, repeats)
                 if tears and repeats > max(1.0, LATE * self.scene.program.strokes / len(cycle)):
                     return math.inf
                 if tears:
@@ -246,7 +251,8 @@ class Stepper:
                 memory.leave(state.stage.memory, i)
             seen = self._observe(state, i, iterations, sliding)
             state.strokes += repeats
-            deactivation.tire(state, repeats, last=k == len(plan) - 1)
+            if self._losses is not None:
+                self._losses.tire(state, repeats, last=k == len(plan) - 1)
             known &= wearing.take()
             state.reports.append(
                 replace(
@@ -302,8 +308,14 @@ class Stepper:
         problem.set_loads(stage.stroke_loads(stroke))
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
-        stage.set_shares(lasting(self.scene.program.cycle, state.phases, index, sliding.repeats))
-        counter_wear.place(stage, state.counters, index, sliding)
+        if stage.remembers:
+            from ngwear.lasting_slip import lasting
+
+            stage.set_shares(lasting(self.scene.program.cycle, state.phases, index, sliding.repeats))
+        if state.counters:
+            from ngwear import counter_wear
+
+            counter_wear.place(stage, state.counters, index, sliding)
         if state.memory is not None:
             state.memory.enter(stage.memory, plan, index)
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
@@ -349,7 +361,7 @@ class Stepper:
             contour=state.contour,
             ledger=state.ledger.copy(),
             cells=state.cells,
-            loaded=deactivation.loaded(stage) if self.scene.deactivation is not None else {},
+            loaded={} if self._losses is None else self._losses.loaded(stage),
         )
 
     def _approach(self, state: State, index: int, stroke: Stroke, work: Work) -> None:

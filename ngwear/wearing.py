@@ -9,11 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import counter_wear, deactivation
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
-from ngwear.lasting_slip import lasting
 from ngwear.remesh import remesh
 from ngwear.state import State
 from ngwear.wear.archard import at_points, worn_share
@@ -139,8 +137,15 @@ class Wearing:
         stage, scene = state.stage, state.stage.scene
         halfway = self.halfway
         width = halfway.widths(scene.worn_edges)
-        shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
-        state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
+        shares = {}
+        if stage.remembers:
+            from ngwear.lasting_slip import lasting
+
+            shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
+        if state.counters:
+            from ngwear import counter_wear
+
+            state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off = np.zeros(len(outline)), np.zeros(len(outline))
         pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
         for k, spec in enumerate(scene.contacts):
@@ -167,6 +172,8 @@ class Wearing:
             state.ledger.depth_error = float(state.depth_error.max())
         phase.pressure, phase.mean, phase.ways = pressure, mean, ways
         if scene.deactivation is not None:
+            from ngwear import deactivation
+
             points = receded(outline, share, scene.worn_edges, stage.body.now.inward())
             state.ledger.worn += float(share.sum())
             state.ledger.removed += outline.area - polygon_area(points)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.fields.background import Background, Seat
 from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.meshed import Meshed
+
+if TYPE_CHECKING:  # no memory, no import of it
+    from ngwear.fields.background import Background, Seat
 
 Array = NDArray[np.float64]
 
@@ -44,6 +46,8 @@ class Unknowns:
 
     def seat(self, background: Background) -> Seat:
         """The body on a background that keeps its memory."""
+        from ngwear.fields.background import Seat
+
         displacement = self.state[DISPLACEMENT]
         return Seat(
             background, body=self.body, kinematics=self.kinematics, points=self.points, displacement=displacement

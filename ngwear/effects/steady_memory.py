@@ -51,6 +51,12 @@ class SteadyMemory(Memory):
         self._points = unknowns.points.places
         self._to_points = self.grid.between(self._points.reshape(-1, self._points.shape[-1]))
 
+    @property
+    def nbytes(self) -> int:
+        """Memory of the history and of its way from the grid to the points [bytes], whatever the number of arms."""
+        way = self._to_points
+        return self.history.nbytes + self.grid.places.nbytes + way.data.nbytes + way.indices.nbytes + way.indptr.nbytes
+
     def set_speed(self, speed: float, wavelength: float) -> None:
         """Sliding speed [mm/s], and the length 2 pi / k of a pressure wave that sets the implicit share.
 

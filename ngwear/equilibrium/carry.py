@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import ngsolve as ng
 import numpy as np
@@ -12,11 +13,13 @@ from scipy.spatial import cKDTree
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.contact import Contact
 from ngwear.effects.contact_patch import PatchContact
-from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
 from ngwear.geometry.harmonic import HarmonicFill
+
+if TYPE_CHECKING:  # nothing sticks, no import of it
+    from ngwear.effects.stick_slip import StickSlip
 
 Array = NDArray[np.float64]
 LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled
@@ -122,6 +125,10 @@ def contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:
 
 def sticking_pairs(old: Problem, new: Problem) -> list[tuple[StickSlip, StickSlip]]:
     """Frictions that stick, likewise."""
+    if not any(t.remembers for t in new.terms):
+        return []
+    from ngwear.effects.stick_slip import StickSlip
+
     before = {t.contact.name: t for t in old.terms if isinstance(t, StickSlip)}
     return [(before[t.contact.name], t) for t in new.terms if isinstance(t, StickSlip)]
 

@@ -7,7 +7,6 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array
 from ngwear.effects.contact import Contact
-from ngwear.effects.friction import Friction, FullSliding
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
 
@@ -84,6 +83,8 @@ def _rigid_motions(problem: Problem) -> list[tuple[str, Array]]:
 
 def _unstable_surface(problem: Problem) -> str:
     """Friction that compresses the surface until it creases, or makes waves grow along it."""
+    from ngwear.effects.friction import Friction, FullSliding
+
     found = []
     for term in problem.terms:
         if isinstance(term, Friction) and isinstance(term.contact, Contact) and term.contact.peak() > 0:

@@ -95,6 +95,11 @@ class MaterialPoints:
         return (self._transposed @ stress.reshape(len(stress), -1, 1))[:, :, 0]
 
     @property
+    def nbytes(self) -> int:
+        """Memory of what is kept at the points [bytes]."""
+        return self._B.nbytes + self._transposed.nbytes + self.volumes.nbytes + self.unknowns.nbytes
+
+    @property
     def places(self) -> Array:
         """Reference coordinates of the points [mm], shape (elements, points, dim)."""
         places = np.stack([np.asarray(c(self._points)) for c in (ng.x, ng.y, ng.z)[: self._dim]], axis=-1)

@@ -5,14 +5,25 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ngwear.absent import Assumed
+from ngwear.sliding.left_out import left_out
 from ngwear.sliding.scene import KIND, PinScene
 
 
-def explain_pin(scene: PinScene) -> dict[str, Any]:
-    """Describe a scene: effects, unknowns of the first mesh, dimensionless numbers, and each arm's Deborah numbers."""
+def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str, Any]:
+    """Describe a scene: each effect and what it brings to the first mesh, and each that is left out with its numbers.
+
+    Parameters
+    ----------
+    scene : PinScene
+    assumed : Assumed or None
+        Constants that the scene does not give.
+    """
+    from ngwear.explain import solver_in_words
+    from ngwear.explaining.costs import MEGABYTE, costs
     from ngwear.sliding.pin import PinStage, coarsened
 
-    pin = scene.pin
+    pin, assumed = scene.pin, assumed or Assumed()
     stage = PinStage(pin, coarsened(scene.mesh), (0.0, 0.0, pin.contact_radius))
     problem, material, series = stage.problem, pin.material, pin.series
     rates = [speed / pin.contact_radius for speed in (min(scene.speeds), max(scene.speeds))]
@@ -26,15 +37,24 @@ def explain_pin(scene: PinScene) -> dict[str, Any]:
     }
     if pin.friction_law is not None:
         effects["friction"] = f"full sliding, {pin.friction_law.words}, in the direction of the track"
+    owners = {name: "contact" if name.startswith("pin ") else "hyperelasticity" for name in problem.names}
+    brought = costs(problem, owners)
+    memory = dict.fromkeys(effects, 0.0) | brought.memory
+    memory["memory"] = stage.memory.nbytes / MEGABYTE
+    absent = left_out(scene, assumed)
     turn = 2 * math.pi * pin.track_radius
     return {
         "scene": scene.name,
         "kind": KIND,
         "effects": effects,
-        "left out": ["wear", "stick-slip", "heat", "adhesion", "inertia", "fluid film"],
+        "left out": list(absent),
         "unknowns on the first mesh": {
             name: problem.part(name).stop - problem.part(name).start for name in problem.names
         },
+        "unknowns": {name: brought.unknowns.get(name, 0) for name in effects},
+        "matrix entries": {name: brought.entries.get(name, 0) for name in effects},
+        "memory [MB]": memory,
+        "solver": solver_in_words(problem, ["friction"]),
         "numbers": {
             "K/G [-]": material.bulk_modulus / material.shear_modulus,
             "contact radius, a guess, over thickness [-]": pin.contact_radius / pin.thickness,
@@ -47,6 +67,8 @@ def explain_pin(scene: PinScene) -> dict[str, Any]:
             f"{_fates(*(folding.fate(time) for folding in foldings))}"
             for time, ratio in zip(series.times, series.ratios, strict=True)
         },
+        "absent": {name: verdict.as_dict() for name, verdict in absent.items()},
+        "assumed": assumed.told(),
     }
 
 

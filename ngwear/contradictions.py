@@ -1,0 +1,78 @@
+"""Effects of a scene that contradict each other: refused, with the reason and a way out."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from ngwear.errors import require
+
+if TYPE_CHECKING:  # they are checked here while they are built
+    from ngwear.scene import ContactSpec, Scene
+
+
+def refuse_in_contact(contact: ContactSpec) -> None:
+    """SceneError for a contact whose effects contradict each other."""
+    place, law, counter = f"contact '{contact.name}'", contact.friction_law, contact.counter_wear_rate
+    still = "a surface that stands still (slides = false)"
+
+    remedy = "give the part a specific_wear_rate as well: its error chooses the jumps"
+    require(counter == 0 or contact.wears, f"{place}.counter_wear_rate", counter, remedy)
+
+    remedy = f"{still} cannot be in full sliding: leave sticks out"
+    require(contact.slides or contact.sticks is not False, f"{place}.sticks", contact.sticks, remedy)
+
+    remedy = "without friction nothing sticks or slips: give the contact a friction, or leave sticks out"
+    require(contact.sticks is None or law is not None, f"{place}.sticks", contact.sticks, remedy)
+
+    remedy = f"{still} wears nothing: leave its wear rate out"
+    require(contact.slides or not contact.wears, f"{place}.specific_wear_rate", contact.specific_wear_rate, remedy)
+
+    drifts = law is not None and (bool(law.breaks) or law.depends_on_speed)
+    remedy = f"{still} has no sliding distance and no speed for a law to follow: give a number"
+    require(contact.slides or not drifts, f"{place}.friction", contact.friction, remedy)
+
+    wear = contact.wear_law
+    remedy = "wears by the work of friction: give the contact a friction"
+    require(wear is None or not wear.needs_friction or law is not None, f"{place}.wear_law", wear, remedy)
+
+    remedy = "says how the part wears, but its specific_wear_rate is 0: give one, or leave the law out"
+    require(wear is None or contact.wears, f"{place}.wear_law", wear, remedy)
+
+
+def refuse_in_scene(scene: Scene) -> None:
+    """SceneError for parts of a scene that contradict each other."""
+    for stroke in scene.program.cycle:
+        place, known = f"program.stroke '{stroke.name}'", stroke.speed is not None
+        remedy = "a sealed pressure needs a [fluid] table that says which edges it may reach"
+        require(stroke.pressure == 0 or scene.fluid is not None, f"{place}.pressure", stroke.pressure, remedy)
+        remedy = "rubber with memory needs the stroke's speed in mm/s"
+        require(scene.prony is None or known, f"{place}.speed", stroke.speed, remedy)
+        for contact in scene.contacts:
+            law = contact.friction_law
+            remedy = f"the friction of contact '{contact.name}' depends on speed: give the stroke's in mm/s"
+            require(law is None or not law.depends_on_speed or known, f"{place}.speed", stroke.speed, remedy)
+
+    rest = scene.program.rest
+    remedy = "only rubber with memory changes while it sits: give [material.prony], or leave rest out"
+    require(scene.prony is not None or math.isinf(rest), "program.rest", rest, remedy)
+
+    for i, support in enumerate(scene.supports):
+        held = sorted(set(support.edges) & set(scene.worn_edges)) if support.x and support.y else []
+        remedy = "a contact wears these edges, which are held in x and y and so cannot yield: hold others"
+        require(not held, f"support[{i}].edges", held, remedy)
+
+    if scene.deactivation is not None:
+        _refuse_with_deactivation(scene)
+
+
+def _refuse_with_deactivation(scene: Scene) -> None:
+    remedy = "must be 'never' in a scene that deactivates elements: its mesh loses them and is not made anew"
+    require(scene.wear.remesh == "never", "wear.remesh", scene.wear.remesh, remedy)
+    remedy = "elements can be deactivated in rubber without memory only: leave one of both out"
+    require(scene.prony is None, "material.prony", scene.prony, remedy)
+    remedy = "at least one contact must wear: below its edges the layers of elements lie"
+    require(bool(scene.worn_edges), "contact.specific_wear_rate", 0.0, remedy)
+    thinnest = scene.accuracy.patch
+    remedy = f"must be at least one element thick (accuracy.patch = {thinnest:g} mm)"
+    require(scene.deactivation.depth >= thinnest, "deactivation.depth", scene.deactivation.depth, remedy)

@@ -1,0 +1,220 @@
+"""What each effect brings, and that a scene without it pays nothing for it: unknowns, memory, assembly, total time.
+
+A sheet under a roller is mounted and slid to and fro, once with an effect and once without. The one without is asked
+for in two processes: one never had the effect, the other ran the scene with the effect and then took it out
+(``dataclasses.replace``). They run in turn, A B B A ..., each on one thread. Printed are CPU times, medians of the
+rounds, and the ratio of the least total times, with the quartiles of the ratios of each round.
+
+Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
+       python price_of_absence.py --subject never | removed EFFECT
+"""
+
+import hashlib
+import json
+import os
+import pickle
+import statistics
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NGS_NUM_THREADS"), "1")
+KINDS = ("never", "removed")
+ROUNDS, ASSEMBLIES = 12, 5
+
+# The modules that belong to each effect alone; wear is the loop itself.
+FRICTION = ("effects.friction", "effects.coefficient", "effects.ripples", "effects.stick_slip", "lasting_slip")
+MODULES = {
+    "friction": FRICTION,
+    "stick-slip": ("effects.stick_slip", "lasting_slip"),
+    "fluid pressure": ("effects.fluid_pressure",),
+    "memory": ("effects.memory", "effects.stroke_memory", "effects.viscosity", "cycle_memory", "fields.background"),
+    "wear": (),
+    "law of wear": ("effects.pressure_wear",),
+    "wear of the surface": ("counter_wear",),
+    "lost elements": ("deactivation", "geometry.element_body", "geometry.layers"),
+}
+
+
+def pair(effect):
+    """The scene with the effect, and without."""
+    from ngwear.geometry.contour import Contour
+    from ngwear.laws import PowerWear
+    from ngwear.materials import MooneyRivlin, PronySeries
+    from ngwear.program import Program, Stroke
+    from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Scene, SupportSpec, Wear
+    from ngwear.surfaces import Cylinder
+    from ngwear.wear.deactivate import Deactivation
+
+    forth = Stroke(name="forth", travel=10.0, speed=20.0)
+    back = Stroke(name="back", travel=10.0, speed=20.0, direction=-1.0)
+    roller = ContactSpec(name="roller", edges=("top",), surface=Cylinder(centre=(0.0, 6.75), radius=5.0), refine=True)
+    bare = Scene(
+        name="sheet",
+        contour=Contour.rectangle((-5.0, 5.0), (0.0, 2.0)),
+        material=MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
+        contacts=(roller,),
+        supports=(SupportSpec(edges=("bottom",)),),
+        program=Program(cycle=(forth, back), strokes=2),
+        accuracy=Accuracy(patch=0.1, coarse=0.5, mounting=0.1),
+        wear=Wear(step="each", remesh="never"),
+    )
+
+    def rolled(scene, **changes):
+        return replace(scene, contacts=(replace(scene.contacts[0], **changes),))
+
+    worn = rolled(bare, specific_wear_rate=1e-5)
+    sealed = replace(back, pressure=0.1)
+    rubbed = rolled(bare, friction=0.3)
+    pairs = {
+        "friction": (rubbed, bare),
+        "stick-slip": (rolled(rubbed, sticks=True), rubbed),
+        "fluid pressure": (
+            replace(
+                bare,
+                fluid=FluidSpec(edges=("right", "top"), inlet=("right",)),
+                program=replace(bare.program, cycle=(forth, sealed)),
+            ),
+            bare,
+        ),
+        "memory": (replace(bare, prony=PronySeries((0.5, 0.4, 0.3), (0.1, 1.0, 10.0))), bare),
+        "wear": (worn, bare),
+        "law of wear": (rolled(worn, wear_law=PowerWear(exponent=1.5)), worn),
+        "wear of the surface": (rolled(worn, counter_wear_rate=1e-6), worn),
+        "lost elements": (replace(worn, deactivation=Deactivation(depth=0.3)), worn),
+    }
+    return pairs[effect]
+
+
+def without(effect, scene, bare):
+    """The scene with the effect taken out again, by hand."""
+    contact = {
+        "friction": {"friction": 0.0},
+        "stick-slip": {"sticks": None},
+        "wear": {"specific_wear_rate": 0.0},
+        "law of wear": {"wear_law": None},
+        "wear of the surface": {"counter_wear_rate": 0.0},
+    }
+    if effect in contact:
+        return replace(scene, contacts=(replace(scene.contacts[0], **contact[effect]),))
+    if effect == "fluid pressure":
+        dry = tuple(replace(stroke, pressure=0.0) for stroke in scene.program.cycle)
+        return replace(scene, fluid=None, program=replace(scene.program, cycle=dry))
+    return replace(scene, prony=None, deactivation=None)
+
+
+def run(scene):
+    """Mount and slide: CPU seconds, and the state at the end."""
+    from ngwear.stepper import Stepper
+
+    stepper, start = Stepper(scene), time.process_time()
+    state = stepper.start()
+    while not stepper.finished(state):
+        state = stepper.advance(state)
+    return time.process_time() - start, state
+
+
+def facts(state):
+    """Unknowns, matrix entries, bytes at the material points and in the state that is kept, solver, and the result."""
+    problem = state.stage.problem
+    matrix = problem.assemble()
+    vector = problem.state.vec.FV().NumPy().tobytes()
+    return {
+        "unknowns": problem.space.ndof,
+        "matrix entries": matrix.nze,
+        "bytes at points": problem.points.nbytes,
+        "bytes of the state": len(pickle.dumps(state)),
+        "symmetric": problem.symmetric,
+        "result": hashlib.sha256(vector).hexdigest()[:16],
+    }
+
+
+def assembly(state):
+    """Median CPU seconds of a residual and a tangent."""
+    problem = state.stage.problem
+    out = problem.state.vec.CreateVector()
+    seconds = []
+    for _ in range(ASSEMBLIES):
+        start = time.process_time()
+        problem.residual(out)
+        problem.assemble()
+        seconds.append(time.process_time() - start)
+    return statistics.median(seconds)
+
+
+def subject(kind, effect):
+    """Answer every line with a run of the scene without the effect; the first answers tell facts."""
+    present, scene = pair(effect)
+    told = {}
+    if kind == "removed":
+        seconds, state = run(present)
+        told["present"] = {**facts(state), "assembly": assembly(state), "total": seconds}
+        scene = without(effect, present, scene)
+    _, state = run(scene)
+    told["absent"] = facts(state)
+    loaded = [name for name in MODULES[effect] if f"ngwear.{name}" in sys.modules]
+    told["loaded"] = loaded
+    tell = sys.stdout
+    print(json.dumps(told), file=tell, flush=True)
+    for _ in sys.stdin:
+        seconds, state = run(scene)
+        print(json.dumps([seconds, assembly(state), facts(state)["result"]]), file=tell, flush=True)
+
+
+def compare(effect, rounds):
+    """What both processes tell of an effect, and their CPU seconds a run."""
+    command = [sys.executable, str(Path(__file__).resolve()), "--subject"]
+    pipe, environment = subprocess.PIPE, {**os.environ, **ONE_THREAD}
+    told, runs, processes = {}, {kind: [] for kind in KINDS}, {}
+    try:
+        for kind in KINDS:
+            processes[kind] = subprocess.Popen(
+                [*command, kind, effect], stdin=pipe, stdout=pipe, text=True, env=environment
+            )
+            told[kind] = json.loads(processes[kind].stdout.readline())
+        for k in range(rounds):
+            for kind in KINDS if k % 2 else reversed(KINDS):
+                processes[kind].stdin.write("run\n")
+                processes[kind].stdin.flush()
+                runs[kind].append(json.loads(processes[kind].stdout.readline()))
+    finally:
+        for process in processes.values():
+            process.stdin.close()
+            process.wait()
+            process.stdout.close()
+    return told, runs
+
+
+def row(effect, told, runs):
+    """A line of the table."""
+    present, absent = told["removed"]["present"], told["never"]["absent"]
+    median = {kind: [statistics.median(r[i] for r in runs[kind]) for i in (0, 1)] for kind in KINDS}
+    ratio = min(r[0] for r in runs["removed"]) / min(r[0] for r in runs["never"])  # other loads only add
+    ratios = sorted(a[0] / b[0] for a, b in zip(runs["removed"], runs["never"], strict=True))
+    spread = f"{ratios[len(ratios) // 4]:.3f} to {ratios[-1 - len(ratios) // 4]:.3f}"
+    kilobytes = [
+        (f["bytes at points"] + f["bytes of the state"] + 12 * f["matrix entries"]) / 1024 for f in (present, absent)
+    ]
+    return (
+        f"| {effect} | {present['unknowns']} / {absent['unknowns']} | {kilobytes[0]:.0f} / {kilobytes[1]:.0f} "
+        f"| {1e3 * present['assembly']:.1f} / {1e3 * median['never'][1]:.1f} "
+        f"| {present['total']:.2f} / {median['never'][0]:.2f} | {ratio:.3f} ({spread}) |"
+    )
+
+
+def main(arguments):
+    """Print the table."""
+    rounds = int(arguments[0]) if arguments else ROUNDS
+    print("| effect, with / without | unknowns | memory [kB] | assembly [ms] | total [s] | removed over never |")  # noqa: T201
+    print("|---|---|---|---|---|---|")  # noqa: T201
+    for effect in arguments[1:] or MODULES:
+        print(row(effect, *compare(effect, rounds)), flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == ["--subject"]:
+        subject(*sys.argv[2:])
+    else:
+        main(sys.argv[1:])
