@@ -11,8 +11,8 @@ from conftest import REMEMBERS
 from ngwear.absent import Assumed, heat
 from ngwear.cli import BAD_INPUT, OK, main
 from ngwear.explain import explain
-from ngwear.explaining.text import lines
 from ngwear.explaining.pressing import press
+from ngwear.explaining.text import lines
 from ngwear.scenefile import read_scene
 from ngwear.sliding.left_out import left_out as left_out_of_pin
 
