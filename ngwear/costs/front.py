@@ -1,0 +1,65 @@
+"""Which runs no other run beats, and which settings are accurate enough for the least time."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+from ngwear.costs.ladder import Setting
+
+
+def pareto_front(points: Iterable[tuple[float, float]]) -> list[int]:
+    """Indices of the points (seconds, error) that none beats in both, by rising seconds."""
+    points = list(points)
+    front: list[int] = []
+    for i in sorted(range(len(points)), key=lambda i: points[i]):
+        if not front or points[i][1] < points[front[-1]][1]:
+            front.append(i)
+    return front
+
+
+def cheapest(
+    target: float,
+    rungs: Sequence[Iterable[int]],
+    error: Callable[[Setting], float],
+    seconds: Callable[[Setting], float],
+    unfit: Iterable[Setting] = (),
+) -> Setting | None:
+    """The combination of rungs of least seconds whose error is at most the target; None if there is none.
+
+    Parameters
+    ----------
+    target : float
+    rungs : sequence of iterable of int
+        Of each ladder, those that are known.
+    error, seconds : callable
+        Of a setting, as predicted.
+    unfit : iterable of Setting
+        Those that measurement has shown not to be accurate enough.
+    """
+    refused = set(unfit)
+    fit = [s for s in itertools.product(*rungs) if s not in refused and error(s) <= target]
+    return min(fit, key=lambda s: (seconds(s), error(s)), default=None)
+
+
+def product_seconds(base: Setting, rung_seconds: Sequence[Mapping[int, float]], setting: Setting) -> float:
+    """Seconds of a combination: each ladder changes those of the base by the factor measured on it."""
+    out = rung_seconds[0][base[0]]
+    for k, rung in enumerate(setting):
+        out *= rung_seconds[k][rung] / rung_seconds[k][base[k]]
+    return out
+
+
+def power_law(
+    values: Sequence[float], seconds: Sequence[float], wanted: float, growth: float, highest: float = math.inf
+) -> float:
+    """Seconds of the next, finer value after the measured ones: ``t ~ value^-p``.
+
+    p is that of the two finest, between half the first guess ``growth`` and 3; the guess for a single one.
+    """
+    p = growth
+    if len(values) > 1 and values[-2] > values[-1] > 0:
+        p = math.log(seconds[-1] / seconds[-2]) / math.log(values[-2] / values[-1])
+        p = min(max(p, 0.5 * growth), 3.0)
+    return min(seconds[-1] * (values[-1] / wanted) ** p, highest)
