@@ -1,4 +1,4 @@
-"""The command line: run, verify, explain, plot, compare."""
+"""The command line: run, verify, explain, cost, plot, compare."""
 
 from __future__ import annotations
 
@@ -33,6 +33,15 @@ def _parser() -> argparse.ArgumentParser:
     explain.add_argument("scene", type=Path, metavar="SCENE.toml")
     explain.add_argument("--json", action="store_true")
     explain.set_defaults(do=_explain)
+    cost = commands.add_parser("cost", help="say what accuracy costs: settings, errors, seconds")
+    cost.add_argument("scene", type=Path, metavar="SCENE.toml")
+    cost.add_argument("--budget", type=float, required=True, metavar="SECONDS", help="wall time of all runs")
+    cost.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder for table, figure and runs; goes on with what is there"
+    )
+    cost.add_argument("--json", action="store_true")
+    cost.add_argument("--quiet", action="store_true", help="no progress bar")
+    cost.set_defaults(do=_cost, again="the same command with the same --out goes on")
     plot = commands.add_parser("plot", help="draw the figures of a run again")
     plot.add_argument("folder", type=Path, metavar="DIR")
     instead = plot.add_mutually_exclusive_group()
@@ -65,7 +74,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"ngwear: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
-        print("ngwear: interrupted; go on with --resume", file=sys.stderr)
+        print(f"ngwear: interrupted; {getattr(options, 'again', 'go on with --resume')}", file=sys.stderr)
         return 130
 
 
@@ -140,6 +149,24 @@ def _explain(options: argparse.Namespace) -> int:
                 print(f"  {key:55s} {item:.4g}" if isinstance(item, float) else f"  {key:55s} {item}")
         else:
             print(f"{name}: {', '.join(value) if isinstance(value, list) else value}")
+    return OK
+
+
+def _cost(options: argparse.Namespace) -> int:
+    from ngwear.cost import cost
+    from ngwear.scenefile import read_scene
+
+    scene = read_scene(options.scene)
+    found = cost(scene, budget=options.budget, folder=options.out, progress=not options.quiet)
+    if not any(run.ok for run in found.study.runs.values()):
+        print(f"ngwear: gave up: {found.paragraph}", file=sys.stderr)
+        return GAVE_UP
+    if options.json:
+        print(json.dumps(found.as_dict(), indent=2))
+        return OK
+    print(found.paragraph)
+    if options.out is not None:
+        print(f"table and figure: {options.out}")
     return OK
 
 

@@ -12,7 +12,7 @@ from ngwear.costs.study import TARGETS, Study
 from ngwear.errors import SceneError
 
 CONFIRMING = 0.15  # of the budget: kept for runs of the settings that are recommended
-OTHERS = 0.4  # of the budget: what ladders other than the mesh's may be expected to take, else on a coarser mesh
+OTHERS = 0.5  # of the budget: what ladders other than the mesh's may be expected to take, else on a coarser mesh
 Measure = Callable[[Setting, float], Measurement]
 
 
@@ -91,35 +91,26 @@ def _run(study: Study, setting: Setting, budget: float, measure: Measure) -> Mea
 
 def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
     """Run the mesh's ladder up to the rung on which the other ladders are climbed; return that rung."""
-    mesh, highest = study.ladders[0], study.ladders[0].own
-    rung = 0
-    while rung <= highest:
-        setting = rung_of(study.own, 0, rung)
-        run = _run(study, setting, budget, measure)
+    mesh = study.ladders[0]
+    for rung in range(mesh.own + 1):
+        if study.rungs(0) and study.next_seconds(0, rung) * _other_runs(study) > OTHERS * budget:
+            break
+        run = _run(study, rung_of(study.own, 0, rung), budget, measure)
         if run.status == STOPPED:
             if not study.rungs(0):
                 _refuse(budget, run, mesh.labels[rung])
             break
-        highest = min(highest, _affordable(study, budget))
-        rung += 1
     return max(study.rungs(0), default=mesh.own)
 
 
-def _affordable(study: Study, budget: float) -> int:
-    """The finest rung of the mesh up to the scene's on which the other ladders leave enough of the budget."""
-    mesh, rungs = study.ladders[0], study.rungs(0)
-    if not rungs:
-        return mesh.own
-    runs = sum(
-        (ladder.values[ladder.own] / value) ** ladder.growth if ladder.values[ladder.own] and value else 1.0
-        for ladder in study.ladders[1:]
-        for value in ladder.values[: ladder.own + 2]
-    )
-    for rung in range(mesh.own, max(rungs), -1):
-        seconds = study.next_seconds(0, rung)
-        if seconds * max(runs, 1.0) <= OTHERS * budget:
-            return rung
-    return max(rungs)
+def _other_runs(study: Study) -> float:
+    """What the other ladders take up to a rung beyond the scene's, over a run of the scene on the same mesh."""
+    runs = 1.0
+    for ladder in study.ladders[1:]:
+        own = ladder.values[ladder.own]
+        values = ladder.values[: ladder.own + 2]
+        runs += sum((own / value) ** ladder.growth if own and value else 1.0 for value in values)
+    return runs
 
 
 def _next_rung(study: Study, k: int) -> int | None:
@@ -173,6 +164,7 @@ def _confirmed(study: Study, target: float, budget: float, measure: Measure) -> 
             lambda s: study.predicted_error(s, study.main),
             study.seconds,
             unfit,
+            study.own,
         )
         if setting is None:
             return Choice(target, None)

@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ngwear.costs.ladder import Setting
 
+ALIKE = 0.05  # relative difference of seconds that a second measurement would not repeat
+
 
 def pareto_front(points: Iterable[tuple[float, float]]) -> list[int]:
     """Indices of the points (seconds, error) that none beats in both, by rising seconds."""
@@ -25,8 +27,12 @@ def cheapest(
     error: Callable[[Setting], float],
     seconds: Callable[[Setting], float],
     unfit: Iterable[Setting] = (),
+    own: Setting = (),
 ) -> Setting | None:
     """The combination of rungs of least seconds whose error is at most the target; None if there is none.
+
+    Among those that take hardly longer than the least, it is the one that changes the fewest knobs of ``own``, and of
+    these the most accurate.
 
     Parameters
     ----------
@@ -37,10 +43,14 @@ def cheapest(
         Of a setting, as predicted.
     unfit : iterable of Setting
         Those that measurement has shown not to be accurate enough.
+    own : Setting
+        The scene's.
     """
     refused = set(unfit)
     fit = [s for s in itertools.product(*rungs) if s not in refused and error(s) <= target]
-    return min(fit, key=lambda s: (seconds(s), error(s)), default=None)
+    times = {s: seconds(s) for s in fit}
+    fast = [s for s in fit if times[s] <= (1 + ALIKE) * min(times.values())]
+    return min(fast, key=lambda s: (sum(a != b for a, b in zip(s, own, strict=False)), error(s)), default=None)
 
 
 def product_seconds(base: Setting, rung_seconds: Sequence[Mapping[int, float]], setting: Setting) -> float:

@@ -38,7 +38,7 @@ def knobs(scene: AnyScene) -> tuple[Knob, ...]:
     if scene.deactivation is None:
         found.append(_stress(scene))
     if scene.prony is not None:
-        found += _arms(scene.accuracy.folding_error, lambda tolerance: [_refolded(scene, tolerance).folding])
+        found += _arms(scene.accuracy.folding_error, lambda tolerance: _foldings_of_wear(scene, tolerance))
     return tuple(found)
 
 
@@ -125,6 +125,11 @@ def _stress(scene: Scene) -> Knob:
 
 def _refolded(scene: Scene, tolerance: float) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy, folding_error=tolerance))
+
+
+def _foldings_of_wear(scene: Scene, tolerance: float) -> list[Folding]:
+    folding = _refolded(scene, tolerance).folding
+    return [] if folding is None else [folding]
 
 
 def _arms(own: float, folded: Callable[[float], Sequence[Folding]]) -> list[Knob]:

@@ -76,9 +76,9 @@ def measure(point: Point) -> Measurement:
     """Run a scene and pick what users read; a run that gives up, or is stopped, comes back as such."""
     start, progress = time.time(), _Progress()
     sent = _began[0] if _began else start
-    run = _slide if isinstance(point.scene, PinScene) else _wear
+    scene = point.scene
     try:
-        found = run(point.scene, progress, sent)
+        found = _slide(scene, progress, sent) if isinstance(scene, PinScene) else _wear(scene, progress, sent)
     except OutOfTimeError:
         found = Measurement(status=STOPPED, message="no time was left", needed=progress.needed(time.time() - sent))
     except NgwearError as error:

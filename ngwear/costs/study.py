@@ -10,7 +10,7 @@ from ngwear.costs.ladder import Ladder, Measurement, Setting, rung_of
 from ngwear.costs.order import observed_order, reference_error, relative
 
 TARGETS = (0.05, 0.01, 0.001)
-SETTLED = 0.1 * min(TARGETS)  # change from rung to rung below which a finer one has nothing to tell
+SETTLED = 0.1 * min(TARGETS)  # error of the finest rung below which a finer one has nothing to tell
 
 
 @dataclass
@@ -133,10 +133,15 @@ class Study:
         return power_law(values, walls, ladder.values[rung], ladder.growth, most)
 
     def settled(self, k: int) -> bool:
-        """Whether the ladder's last two changes of the main quantity, beyond the scene's rung, are negligible."""
+        """Whether a finer rung has nothing to tell: the finest, beyond the scene's, errs by next to nothing.
+
+        By its own error where an order shows, else by the last two changes of the main quantity.
+        """
         rungs = list(self.rungs(k).items())
         if len(rungs) < 3 or rungs[-1][0] <= self.ladders[k].own:
             return False
+        if self.order(k, self.main) is not None:
+            return self.own_error(k, self.main) < SETTLED
         results = [run.values[self.main] for _, run in rungs[-3:]]
         return max(relative(a, results[2]) for a in results[:2]) < SETTLED
 
