@@ -165,6 +165,11 @@ def _cost(options: argparse.Namespace) -> int:
         print(json.dumps(found.as_dict(), indent=2))
         return OK
     print(found.paragraph)
+    for choice, written in zip(found.choices, found.written, strict=True):
+        if written:
+            print(
+                f"for {100 * choice.target:g} %: " + ", ".join(f"{place} = {value}" for place, value in written.items())
+            )
     if options.out is not None:
         print(f"table and figure: {options.out}")
     return OK

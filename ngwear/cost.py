@@ -17,7 +17,7 @@ from typing import Any
 
 from ngwear import __version__
 from ngwear.costs.climb import Choice, climb, confirm
-from ngwear.costs.knobs import Knob, at, knobs
+from ngwear.costs.knobs import Knob, at, changes, knobs
 from ngwear.costs.ladder import STOPPED, Measurement, Setting, told
 from ngwear.costs.measure import DEPTH, PEAK, Limited, Point, measure
 from ngwear.costs.report import as_dict, table
@@ -47,12 +47,15 @@ class Cost:
         Runs, errors, orders, front.
     choices : list of Choice
         Recommended settings for 5 %, 1 % and 0.1 % of the main quantity.
+    written : list of dict or None
+        What to write into the scene's file for each; None where nothing is recommended.
     """
 
     scene: str
     budget: float
     study: Study
     choices: list[Choice]
+    written: list[dict[str, Any] | None]
 
     @property
     def paragraph(self) -> str:
@@ -62,7 +65,10 @@ class Cost:
     def as_dict(self) -> dict[str, Any]:
         """As in ``cost.json``."""
         head = {"scene": self.scene, "budget [s]": self.budget, "in words": self.paragraph}
-        return head | as_dict(self.study, self.choices) | {"units": UNITS, "ngwear": __version__}
+        found = as_dict(self.study, self.choices)
+        for choice, written in zip(found["recommended"], self.written, strict=True):
+            choice["change in the scene"] = written
+        return head | found | {"units": UNITS, "ngwear": __version__}
 
     def table(self) -> list[dict[str, Any]]:
         """As in ``cost.csv``: one row a run."""
@@ -112,7 +118,9 @@ def cost(
     with keep as path, _Bar(budget, shown=progress) as bar:
         run = _runner(scene, chosen, Path(path) / RUNS, bar.begin, bar.end)
         study = climb(ladders, main, budget, run)
-        found = Cost(scene.name, budget, study, confirm(study, budget, run))
+        choices = confirm(study, budget, run)
+    written = [None if c.setting is None else changes(scene, at(scene, chosen, c.setting)) for c in choices]
+    found = Cost(scene.name, budget, study, choices, written)
     if out is not None:
         _write(out, found, figures=figures)
     return found

@@ -12,7 +12,9 @@ from ngwear.costs.study import TARGETS, Study
 from ngwear.errors import SceneError
 
 CONFIRMING = 0.15  # of the budget: kept for runs of the settings that are recommended
-OTHERS = 0.5  # of the budget: what ladders other than the mesh's may be expected to take, else on a coarser mesh
+FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
+OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
+TOGETHER = 0.6  # of what is then left: what a run with all knobs at their finest may take
 Measure = Callable[[Setting, float], Measurement]
 
 
@@ -52,12 +54,11 @@ def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measur
     Raises
     ------
     SceneError
-        If not even the coarsest run fits.
+        If not even one run fits.
     """
     study = Study(ladders, main, tuple(ladder.own for ladder in ladders))
-    own = study.own
-    mesh_rungs = _climb_mesh(study, budget, measure)
-    study.base = rung_of(own, 0, mesh_rungs)
+    base = _climb_mesh(study, budget, measure)
+    study.base = rung_of(study.own, 0, base)
     ended: set[int] = set()
     ladder_budget = (1 - CONFIRMING) * budget
     while len(ended) < len(ladders):
@@ -81,8 +82,9 @@ def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measur
     return study
 
 
-def _run(study: Study, setting: Setting, budget: float, measure: Measure) -> Measurement:
-    run = measure(setting, budget - study.spent)
+def _run(study: Study, setting: Setting, budget: float, measure: Measure, *, share: float = 1.0) -> Measurement:
+    """Run a setting for at most a share of what is left; a run that is stopped is left out."""
+    run = measure(setting, share * (budget - study.spent))
     study.runs[setting] = run
     if run.status == STOPPED:
         study.left_out[setting] = run.needed
@@ -90,17 +92,24 @@ def _run(study: Study, setting: Setting, budget: float, measure: Measure) -> Mea
 
 
 def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
-    """Run the mesh's ladder up to the rung on which the other ladders are climbed; return that rung."""
+    """Run the scene on a coarser mesh and on its own; return the rung on which the other ladders are climbed.
+
+    The coarsest mesh only if the coarser one is too slow: there, the wear may call for many more steps.
+    """
     mesh = study.ladders[0]
-    for rung in range(mesh.own + 1):
-        if study.rungs(0) and study.next_seconds(0, rung) * _other_runs(study) > OTHERS * budget:
-            break
-        run = _run(study, rung_of(study.own, 0, rung), budget, measure)
-        if run.status == STOPPED:
-            if not study.rungs(0):
-                _refuse(budget, run, mesh.labels[rung])
-            break
-    return max(study.rungs(0), default=mesh.own)
+    first = max(mesh.own - 1, 0)
+    _run(study, rung_of(study.own, 0, first), budget, measure, share=FIRST)
+    rung = first - 1
+    while rung >= 0 and not study.rungs(0):
+        _run(study, rung_of(study.own, 0, rung), budget, measure)
+        rung -= 1
+    if mesh.own > first and study.next_seconds(0, mesh.own) <= FIRST * (budget - study.spent):
+        _run(study, study.own, budget, measure)
+    _refuse_if_none_fits(study, budget)
+    walls = {rung: run.wall for rung, run in study.rungs(0).items()}
+    left = OTHERS * (budget - study.spent)
+    fit = [rung for rung, wall in walls.items() if wall * _other_runs(study) <= left]
+    return max(fit) if fit else min(walls, key=lambda rung: walls[rung], default=mesh.own)
 
 
 def _other_runs(study: Study) -> float:
@@ -130,17 +139,25 @@ def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:
         study.left_out[rung_of(study.base, k, own)] = study.next_seconds(k, own)
 
 
-def _refuse(budget: float, run: Measurement, label: str) -> None:
-    known = math.isfinite(run.needed)
-    takes = f"about {run.needed:.0f} s" if known else f"more than {run.wall:.0f} s"
-    give = f"give a few times {run.needed:.0f} s" if known else "give many times as much"
+def _refuse_if_none_fits(study: Study, budget: float) -> None:
+    """SceneError if all that was run had to be stopped."""
+    stopped = {setting: run for setting, run in study.runs.items() if run.status == STOPPED}
+    if not stopped or len(stopped) < len(study.runs):
+        return
+    setting = min(stopped, key=lambda s: (stopped[s].needed if math.isfinite(stopped[s].needed) else math.inf, s))
+    needed, label = stopped[setting].needed, study.ladders[0].labels[setting[0]]
+    known = math.isfinite(needed)
+    takes = f"about {needed:.2g} s" if known else f"more than {stopped[setting].wall:.2g} s"
+    give = f"give {10 * needed:.2g} s or more for a study" if known else "give many times as much"
     raise SceneError(
-        "cost.budget", budget, f"does not reach for one run: on the coarsest mesh ({label}) it takes {takes}; {give}"
+        "cost.budget", budget, f"does not reach for one run: on a mesh of {label} it takes {takes}; {give}"
     )
 
 
 def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
     """The cheapest setting for each target, run as far as the budget reaches: what fails its target gives way.
+
+    Before, all knobs at their finest together, if there is time: that tells whether their errors add up.
 
     Parameters
     ----------
@@ -152,6 +169,8 @@ def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
     """
     if any(len(study.rungs(k)) < 2 for k in range(len(study.ladders))) or study.base not in study.runs:
         return [Choice(target, None) for target in TARGETS]
+    if study.seconds(study.finest, wall=True) <= TOGETHER * (budget - study.spent):
+        _run(study, study.finest, budget, measure)
     return [_confirmed(study, target, budget, measure) for target in TARGETS]
 
 

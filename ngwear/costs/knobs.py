@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from ngwear.costs.ladder import Ladder, Setting
@@ -56,6 +56,17 @@ def at(scene: AnyScene, chosen: Sequence[Knob], setting: Setting) -> Any:
     return scene
 
 
+def changes(scene: AnyScene, other: AnyScene) -> dict[str, Any]:
+    """What to write into a scene's file to make it another, by place; nothing if they are alike."""
+    tables = {"accuracy": "mesh"} if isinstance(scene, PinScene) else {"accuracy": "accuracy", "wear": "wear"}
+    found: dict[str, Any] = {}
+    for table, attribute in tables.items():
+        old, new = getattr(scene, attribute), getattr(other, attribute)
+        places = {field.name: getattr(new, field.name) for field in fields(new)}
+        found |= {f"{table}.{name}": value for name, value in places.items() if value != getattr(old, name)}
+    return found
+
+
 def _scaled(
     name: str,
     column: str,
@@ -82,7 +93,7 @@ def _scaled(
 
 def _mesh(scene: Scene) -> Knob:
     """Element edges near and far by one factor, those of the mounting mesh as far as they must follow."""
-    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.patch, MESH, 1.2, unit=" mm")
+    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.patch, MESH, 1.0, unit=" mm")
 
     def apply(scene: Scene, patch: float) -> Scene:
         old = scene.accuracy
@@ -98,7 +109,7 @@ def _jumps(scene: Scene) -> Knob:
     start = EACH_BEGINS if each else scene.accuracy.wear_error
     values = [start * factor for factor in JUMPS if start * factor < 1] + [0.0]
     ladder = Ladder(
-        name="error of a jump",
+        name="jumps over strokes",
         column="accuracy.wear_error [-]",
         values=tuple(values),
         labels=(*(f"wear_error {value:.4g}" for value in values[:-1]), "each stroke solved"),

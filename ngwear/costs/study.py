@@ -92,13 +92,23 @@ class Study:
         """Relative error of a setting as the sum of its knobs' parts; infinite if one is not known."""
         return sum(self.part(k, i, quantity) for k, i in enumerate(setting))
 
-    def best(self, quantity: str) -> float:
+    @property
+    def finest(self) -> Setting:
+        """Each ladder's finest completed rung together; of the base where a ladder has none."""
+        return tuple(max(self.rungs(k), default=self.base[k]) for k in range(len(self.ladders)))
+
+    def added(self, quantity: str) -> float:
         """The base's value with the correction by each ladder's finest run; nan without the base."""
         base = self.runs.get(self.base)
         if base is None or not base.ok:
             return math.nan
         value = base.values[quantity]
         return value + sum(list(self.rungs(k).values())[-1].values[quantity] - value for k in range(len(self.ladders)))
+
+    def best(self, quantity: str) -> float:
+        """The value of the run with all knobs at their finest; without it what the ladders add up to."""
+        run = self.runs.get(self.finest)
+        return run.values[quantity] if run is not None and run.ok else self.added(quantity)
 
     def error(self, setting: Setting, quantity: str) -> float:
         """Relative error of a run: as predicted, or its difference from ``best`` if that is more."""
@@ -124,11 +134,11 @@ class Study:
         if not rungs:
             return base.wall if base is not None and base.ok else math.nan
         last = rungs[max(rungs)]
+        if rung < max(rungs):
+            return rungs[min(i for i in rungs if i > rung)].wall
         if ladder.values[rung] == 0:
             return last.wall * max(1.0, ladder.most_solves / max(last.solves, 1))
         values, walls = [ladder.values[i] for i in rungs], [run.wall for run in rungs.values()]
-        if rung < max(rungs):
-            return last.wall
         most = last.wall * max(1.0, ladder.most_solves / max(last.solves, 1)) if ladder.most_solves else math.inf
         return power_law(values, walls, ladder.values[rung], ladder.growth, most)
 

@@ -6,7 +6,8 @@ import math
 from collections.abc import Sequence
 
 from ngwear.costs.climb import Choice
-from ngwear.costs.ladder import STOPPED, Setting, told
+from ngwear.costs.ladder import STOPPED, Ladder, Setting
+from ngwear.costs.order import relative
 from ngwear.costs.study import Study
 
 
@@ -22,10 +23,23 @@ def per_cent(error: float) -> str:
 
 def setting_in_words(study: Study, setting: Setting) -> str:
     """Such as ``element edge 0.05 mm, stress_error 0.1``."""
-    words = told(study.ladders, setting)
-    return ", ".join(
-        f"{name} {label}" if label[0].isdigit() and "arm" not in label else label for name, label in words.items()
-    )
+    return ", ".join(_labelled(ladder, i) for ladder, i in zip(study.ladders, setting, strict=True))
+
+
+def change_in_words(study: Study, setting: Setting) -> str:
+    """A setting by what it changes in the scene."""
+    own = study.own
+    changed = [k for k, i in enumerate(setting) if i != own[k]]
+    if not changed:
+        return "the scene as it stands"
+    words = [_labelled(study.ladders[k], setting[k]) for k in changed]
+    return ", ".join(words) + ("" if len(changed) == len(own) else ", the rest as it stands")
+
+
+def _labelled(ladder: Ladder, rung: int) -> str:
+    """Such as ``element edge 0.05 mm`` or ``stress_error 0.1``."""
+    label = ladder.labels[rung]
+    return f"{ladder.name} {label}" if label[0].isdigit() and "arm" not in label else label
 
 
 def paragraph(scene: str, study: Study, choices: Sequence[Choice], budget: float) -> str:
@@ -34,6 +48,7 @@ def paragraph(scene: str, study: Study, choices: Sequence[Choice], budget: float
     done = sum(run.ok for run in runs)
     parts = [f"{scene}: {done} run{'' if done == 1 else 's'} took {study.spent:.0f} s of the {budget:g} s given."]
     parts.append(_own(study))
+    parts.append(_together(study))
     parts += _choices(study, choices)
     parts += _not_run(study)
     parts += _failed(study)
@@ -67,6 +82,18 @@ def _own(study: Study) -> str:
     return f"{text}.{_others(study, own)}"
 
 
+def _together(study: Study) -> str:
+    """Whether the errors of the knobs add up, where that was tried."""
+    run, quantity = study.runs.get(study.finest), study.main
+    if run is None or not run.ok or study.finest == study.base:
+        return ""
+    off = relative(study.added(quantity), run.values[quantity])
+    return (
+        f"All knobs at their finest together find {run.values[quantity]:.4g}, which the sum of their single effects "
+        f"meets within {per_cent(off)}."
+    )
+
+
 def _others(study: Study, setting: Setting) -> str:
     """What else a user reads of this run is off by, if it is more than the main quantity."""
     main = study.error(setting, study.main)
@@ -74,7 +101,7 @@ def _others(study: Study, setting: Setting) -> str:
     worse = {q: e for q, e in errors.items() if math.isfinite(e) and e > max(2 * main, 1e-3)}
     if not worse:
         return ""
-    return " The " + ", the ".join(f"{name_of(q)} is off by {per_cent(e)}" for q, e in worse.items()) + " there."
+    return " There the " + ", the ".join(f"{name_of(q)} is off by {per_cent(e)}" for q, e in worse.items()) + "."
 
 
 def _choices(study: Study, choices: Sequence[Choice]) -> list[str]:
@@ -85,15 +112,15 @@ def _choices(study: Study, choices: Sequence[Choice]) -> list[str]:
         if choice.setting is None:
             out.append(f"{goal}: not reached within the budget{_least(study)}.")
             continue
-        words = setting_in_words(study, choice.setting)
+        words = change_in_words(study, choice.setting)
         if choice.measured:
             run = study.runs[choice.setting]
             found = f"{run.cpu:.3g} s, error {per_cent(study.error(choice.setting, study.main))}"
-            out.append(f"{goal} take {words} ({found}).{_others(study, choice.setting)}")
+            out.append(f"{goal}: {words} ({found}).{_others(study, choice.setting)}")
         else:
             seconds, error = study.seconds(choice.setting), study.predicted_error(choice.setting, study.main)
             out.append(
-                f"{goal} take {words}: by the ladders {seconds:.3g} s and an error of {per_cent(error)}; there was no "
+                f"{goal}: {words}, by the ladders {seconds:.3g} s and an error of {per_cent(error)}; there was no "
                 "time left to run it."
             )
     return out
@@ -109,8 +136,7 @@ def _differs(study: Study, setting: Setting) -> str:
     changed = [k for k, i in enumerate(setting) if i != study.base[k]]
     if len(changed) != 1:
         return setting_in_words(study, setting)
-    ladder, label = study.ladders[changed[0]], study.ladders[changed[0]].labels[setting[changed[0]]]
-    return f"{ladder.name} {label}" if label[0].isdigit() and "arm" not in label else label
+    return _labelled(study.ladders[changed[0]], setting[changed[0]])
 
 
 def _not_run(study: Study) -> list[str]:

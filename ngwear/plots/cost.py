@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARKERS = ("o", "s", "^", "D", "v")
-LEAST = 1e-6  # errors below, or none at all, are drawn here
+LEAST = 1e-5  # errors below, or none at all, are drawn here
 
 
 def draw_cost(scene: str, study: Study, choices: Sequence[Choice]) -> Figure:
@@ -42,6 +42,7 @@ def draw_cost(scene: str, study: Study, choices: Sequence[Choice]) -> Figure:
     _draw_ladders(alone, study)
     figure.suptitle(f"{scene}: error of the {name_of(study.main)} against processor time")
     for axis in (whole, alone):
+        axis.margins(0.13)
         axis.set_xlabel("processor time of the run [s]")
         axis.grid(alpha=0.25, which="both")
         axis.xaxis.set_major_formatter("{x:g}")
@@ -111,8 +112,9 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
         for i, place in zip(others, zip(x, y, strict=True), strict=True):
             text = ladder.labels[i].removeprefix("wear_error ").removeprefix("stress_error ")
             own = i == ladder.own and rung_of(study.base, k, i) in study.runs
+            below = i % 2 == 1  # neighbours' labels keep clear of each other
             axis.annotate(
-                text, place, xytext=(5, 4), textcoords="offset points", fontsize=7.5, color=colour,
+                text, place, xytext=(5, -11 if below else 5), textcoords="offset points", fontsize=7.5, color=colour,
                 fontweight="bold" if own else "normal",
             )  # fmt: skip
     axis.set_ylabel("relative difference from the ladder's finest run [-]")
