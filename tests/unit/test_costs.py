@@ -195,7 +195,7 @@ def test_a_rung_that_gives_up_does_not_lose_the_others():
 
 
 def test_measured_error_beyond_the_target_gives_way():
-    ladders, first = (replace(EDGE, own=3), JUMP), (2, 1)
+    ladders, first = (replace(EDGE, own=4), JUMP), (2, 1)
     study = climb(ladders, DEPTH, 1000.0, Fake())
     assert confirm(study, 1000.0, Fake())[0].setting == first, "changes both knobs"
 
