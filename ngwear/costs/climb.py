@@ -126,9 +126,14 @@ def _next_rung(study: Study, k: int) -> int | None:
     """The coarsest rung of a ladder that has not been tried; None at its end."""
     ladder = study.ladders[k]
     tried = [i for i in range(len(ladder.values)) if rung_of(study.base, k, i) in study.runs]
-    rung = next((i for i in range(len(ladder.values)) if i not in tried), None)
+    left = [i for i in range(len(ladder.values)) if i not in tried]
     failed_fine = any(i > ladder.own and not study.runs[rung_of(study.base, k, i)].ok for i in tried)
-    return None if failed_fine or study.settled(k) else rung
+    if not left or failed_fine or study.settled(k):
+        return None
+    rungs = study.rungs(k)
+    if ladder.most_solves and rungs and rungs[max(rungs)].solves >= ladder.most_solves and max(rungs) >= ladder.own:
+        return left[-1]  # finer tolerances of the jump have no jumps left to shorten
+    return left[0]
 
 
 def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:

@@ -83,10 +83,16 @@ class Study:
         return relative(rungs[rung].values[quantity], rungs[max(rungs)].values[quantity])
 
     def part(self, k: int, rung: int, quantity: str) -> float:
-        """What a knob's value adds to the error: a rung finer than all that have been run as much as the finest."""
-        finest = max(self.rungs(k), default=-1)
-        found = 0.0 if 0 <= finest < rung else self.rung_error(k, rung, quantity)
-        return math.inf if found is None else found + self.own_error(k, quantity)
+        """What a knob's value adds to the error; infinite if that is not known.
+
+        It counts as no more accurate than any finer one: a coarse rung that is near the reference is so by chance. A
+        rung finer than all that have been run errs as the finest.
+        """
+        rungs = self.rungs(k)
+        if not rungs or (rung < max(rungs) and rung not in rungs):
+            return math.inf
+        found = [self.rung_error(k, i, quantity) or 0.0 for i in rungs if i >= rung]
+        return max(found, default=0.0) + self.own_error(k, quantity)
 
     def predicted_error(self, setting: Setting, quantity: str) -> float:
         """Relative error of a setting as the sum of its knobs' parts; infinite if one is not known."""

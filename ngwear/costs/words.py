@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -106,19 +107,18 @@ def _others(study: Study, setting: Setting) -> str:
 
 def _choices(study: Study, choices: Sequence[Choice]) -> list[str]:
     out = []
-    main = name_of(study.main)
-    for choice in choices:
-        goal = f"For {100 * choice.target:g} % of the {main}"
-        if choice.setting is None:
+    for (setting, measured), alike in itertools.groupby(choices, key=lambda c: (c.setting, c.measured)):
+        goals = " and ".join(f"{100 * choice.target:g} %" for choice in alike)
+        goal = f"For {goals} of the {name_of(study.main)}"
+        if setting is None:
             out.append(f"{goal}: not reached within the budget{_least(study)}.")
             continue
-        words = change_in_words(study, choice.setting)
-        if choice.measured:
-            run = study.runs[choice.setting]
-            found = f"{run.cpu:.3g} s, error {per_cent(study.error(choice.setting, study.main))}"
-            out.append(f"{goal}: {words} ({found}).{_others(study, choice.setting)}")
+        words = change_in_words(study, setting)
+        if measured:
+            found = f"{study.runs[setting].cpu:.3g} s, error {per_cent(study.error(setting, study.main))}"
+            out.append(f"{goal}: {words} ({found}).{_others(study, setting)}")
         else:
-            seconds, error = study.seconds(choice.setting), study.predicted_error(choice.setting, study.main)
+            seconds, error = study.seconds(setting), study.predicted_error(setting, study.main)
             out.append(
                 f"{goal}: {words}, by the ladders {seconds:.3g} s and an error of {per_cent(error)}; there was no "
                 "time left to run it."

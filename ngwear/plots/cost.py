@@ -65,9 +65,9 @@ def _draw_runs(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
             x, y = [shown[s].cpu for s in of_kind], [errors[s] for s in of_kind]
             axis.loglog(x, y, marker, color=colour, ms=7, alpha=0.85, label=label)
     front = study.front()
-    axis.step(
-        [shown[s].cpu for s in front], [errors[s] for s in front], "k-", where="post", lw=1.3, label="Pareto front"
-    )
+    last = max(run.cpu for run in shown.values())  # to the right, nothing is better either
+    x, y = [shown[s].cpu for s in front], [errors[s] for s in front]
+    axis.step([*x, 1.1 * last], [*y, y[-1]], "k-", where="post", lw=1.3, label="Pareto front")
     if study.own in shown:
         at = shown[study.own].cpu, errors[study.own]
         axis.plot(*at, "o", ms=15, mfc="none", mec="k", mew=1.2, label="the scene as it stands")
@@ -91,7 +91,7 @@ def _mark_targets(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
             goals.setdefault(at, []).append(f"{100 * choice.target:g} %")
     for at, names in goals.items():
         axis.annotate(
-            f"for {', '.join(names)}", at, xytext=(-8, -14), textcoords="offset points", fontsize=9, ha="right",
+            f"for {', '.join(names)}", at, xytext=(10, -16), textcoords="offset points", fontsize=9,
             arrowprops={"arrowstyle": "-", "lw": 0.6},
         )  # fmt: skip
 
@@ -101,7 +101,7 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
         rungs = study.rungs(k)
         if len(rungs) < 2:
             continue
-        others = list(rungs)[:-1]
+        others = [i for i in rungs if study.rung_error(k, i, study.main)]  # those that differ from the reference
         x = [rungs[i].cpu for i in others]
         y = [max(study.rung_error(k, i, study.main) or 0.0, LEAST) for i in others]
         order = study.order(k, study.main)

@@ -45,15 +45,15 @@ def studied(tmp_path_factory, write_sheet):
 
 
 def test_only_knobs_that_the_scene_calls_for(sheet, seal, tmp_path, write_sheet):
-    assert names(sheet) == ["element edge", "error of a jump", "stress criterion"]
-    assert names(seal) == ["element edge", "error of a jump", "stress criterion"]
+    assert names(sheet) == ["element edge", "jumps over strokes", "stress criterion"]
+    assert names(seal) == ["element edge", "jumps over strokes", "stress criterion"]
     filled = read_scene(write_sheet(tmp_path / "filled", *REMEMBERS))
-    assert names(filled) == ["element edge", "error of a jump", "stress criterion", "arms of the memory"]
+    assert names(filled) == ["element edge", "jumps over strokes", "stress criterion", "arms of the memory"]
     (contact,) = sheet.contacts
     unworn = replace(sheet, contacts=(replace(contact, specific_wear_rate=0.0),))
-    assert "error of a jump" not in names(unworn)
+    assert "jumps over strokes" not in names(unworn)
     short = replace(sheet, program=replace(sheet.program, strokes=2))
-    assert "error of a jump" not in names(short)
+    assert "jumps over strokes" not in names(short)
 
 
 def test_rungs_change_their_knob_and_nothing_else(seal):

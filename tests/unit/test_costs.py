@@ -130,6 +130,25 @@ def test_ample_budget_climbs_everything_and_finds_errors_and_orders():
     assert "edge 0.1" in text
 
 
+def test_a_coarse_rung_near_the_reference_by_chance_is_not_believed():
+    def lucky(setting, left):
+        run = Fake()(setting, left)
+        return replace(run, values={DEPTH: LIMIT}) if setting == (0, 2) else run
+
+    study = climb(LADDERS, DEPTH, 1000.0, lucky)
+    assert study.rung_error(0, 0, DEPTH) < study.rung_error(0, 1, DEPTH)
+    assert study.part(0, 0, DEPTH) == study.part(0, 1, DEPTH) > study.part(0, 2, DEPTH)
+
+
+def test_jumps_that_are_single_strokes_already_are_not_refined_further():
+    def short(setting, left):
+        run = Fake()(setting, left)
+        return replace(run, solves=210) if setting[1] >= 2 else run
+
+    study = climb(LADDERS, DEPTH, 1000.0, short)
+    assert set(study.rungs(1)) == {0, 1, 2, 4}
+
+
 def test_front_holds_no_run_that_another_beats():
     study, *_ = study_of(1000.0)
     front = study.front()
