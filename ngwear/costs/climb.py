@@ -131,7 +131,8 @@ def _next_rung(study: Study, k: int) -> int | None:
     if not left or failed_fine or study.settled(k):
         return None
     rungs = study.rungs(k)
-    if ladder.most_solves and rungs and rungs[max(rungs)].solves >= ladder.most_solves and max(rungs) >= ladder.own:
+    finest = max(rungs, default=len(ladder.values))
+    if ladder.most_solves and finest < left[0] and rungs[finest].solves >= ladder.most_solves:
         return left[-1]  # finer tolerances of the jump have no jumps left to shorten
     return left[0]
 
