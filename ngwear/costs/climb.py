@@ -11,7 +11,7 @@ from ngwear.costs.ladder import STOPPED, Ladder, Measurement, Setting, rung_of
 from ngwear.costs.study import TARGETS, Study
 from ngwear.errors import SceneError
 
-CONFIRMING = 0.15  # of the budget: kept for runs of the settings that are recommended
+CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended
 FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
 OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
 TOGETHER = 0.6  # of what is then left: what a run with all knobs at their finest may take
@@ -60,7 +60,8 @@ def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measur
     base = _climb_mesh(study, budget, measure)
     study.base = rung_of(study.own, 0, base)
     ended: set[int] = set()
-    ladder_budget = (1 - CONFIRMING) * budget
+    first = study.runs.get(study.base)
+    ladder_budget = budget - min(CONFIRMING * budget, CONFIRMING_RUNS * (first.wall if first else budget))
     while len(ended) < len(ladders):
         waiting = {}
         for k in set(range(len(ladders))) - ended:
@@ -126,13 +127,13 @@ def _next_rung(study: Study, k: int) -> int | None:
     """The coarsest rung of a ladder that has not been tried; None at its end."""
     ladder = study.ladders[k]
     tried = [i for i in range(len(ladder.values)) if rung_of(study.base, k, i) in study.runs]
-    left = [i for i in range(len(ladder.values)) if i not in tried]
+    rungs = study.rungs(k)
+    finest = max(rungs, default=-1)
+    left = [i for i in range(len(ladder.values)) if i not in tried and not ladder.own < i < finest]
     failed_fine = any(i > ladder.own and not study.runs[rung_of(study.base, k, i)].ok for i in tried)
     if not left or failed_fine or study.settled(k):
         return None
-    rungs = study.rungs(k)
-    finest = max(rungs, default=len(ladder.values))
-    if ladder.most_solves and finest < left[0] and rungs[finest].solves >= ladder.most_solves:
+    if ladder.most_solves and 0 <= finest < left[0] and rungs[finest].solves >= ladder.most_solves:
         return left[-1]  # finer tolerances of the jump have no jumps left to shorten
     return left[0]
 
