@@ -167,9 +167,8 @@ def _cost(options: argparse.Namespace) -> int:
     print(found.paragraph)
     for choice, written in zip(found.choices, found.written, strict=True):
         if written:
-            print(
-                f"for {100 * choice.target:g} %: " + ", ".join(f"{place} = {value}" for place, value in written.items())
-            )
+            told = [f"{k} = {v:.6g}" if isinstance(v, float) else f"{k} = {json.dumps(v)}" for k, v in written.items()]
+            print(f"for {100 * choice.target:g} %: {', '.join(told)}")
     if options.out is not None:
         print(f"table and figure: {options.out}")
     return OK

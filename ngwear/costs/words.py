@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 
 from ngwear.costs.climb import Choice
-from ngwear.costs.ladder import STOPPED, Ladder, Setting
+from ngwear.costs.ladder import STOPPED, Ladder, Measurement, Setting
 from ngwear.costs.order import relative
 from ngwear.costs.study import Study
 
@@ -66,9 +66,8 @@ def _own(study: Study) -> str:
         )
     if not run.ok:
         return "The scene as it stands did not reach its end."
-    value, unit = run.values[quantity], quantity.rsplit("[", 1)[1].rstrip("]")
     text = f"As the scene stands ({setting_in_words(study, own)}) it takes {run.cpu:.3g} s of processor time"
-    text += f" and finds a {name_of(quantity)} of {value:.4g} {unit}"
+    text += f" and finds a {name_of(quantity)} of {_valued(run, quantity)}"
     error = study.error(own, quantity)
     if not math.isfinite(error):
         lone = [
@@ -88,11 +87,15 @@ def _together(study: Study) -> str:
     run, quantity = study.runs.get(study.finest), study.main
     if run is None or not run.ok or study.finest == study.base:
         return ""
-    off = relative(study.added(quantity), run.values[quantity])
+    off = per_cent(relative(study.added(quantity), run.values[quantity]))
     return (
-        f"All knobs at their finest together find {run.values[quantity]:.4g}, which the sum of their single effects "
-        f"meets within {per_cent(off)}."
+        f"All knobs at their finest together find {_valued(run, quantity)}; single effects add up to that within {off}."
     )
+
+
+def _valued(run: Measurement, quantity: str) -> str:
+    """With its unit."""
+    return f"{run.values[quantity]:.4g} {quantity.rsplit('[', 1)[1].rstrip(']')}"
 
 
 def _others(study: Study, setting: Setting) -> str:

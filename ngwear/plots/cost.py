@@ -34,6 +34,7 @@ def draw_cost(scene: str, study: Study, choices: Sequence[Choice]) -> Figure:
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator
 
     figure = Figure(figsize=(13, 5.8), layout="constrained")
     FigureCanvasAgg(figure)
@@ -45,9 +46,9 @@ def draw_cost(scene: str, study: Study, choices: Sequence[Choice]) -> Figure:
         axis.margins(0.13)
         axis.set_xlabel("processor time of the run [s]")
         axis.grid(alpha=0.25, which="both")
+        axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axis.xaxis.set_major_formatter("{x:g}")
-        axis.xaxis.set_minor_formatter("{x:g}")
-        axis.tick_params(axis="x", which="minor", labelsize=8)
+        axis.xaxis.set_minor_formatter("")
     return figure
 
 
