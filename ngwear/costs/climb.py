@@ -14,7 +14,7 @@ from ngwear.errors import SceneError
 CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended
 FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
 OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
-TOGETHER = 0.6  # of what is then left: what a run with all knobs at their finest may take
+TOGETHER = 0.4  # of what is then left: what a run with all knobs at their finest may take
 Measure = Callable[[Setting, float], Measurement]
 
 
@@ -78,7 +78,7 @@ def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measur
         if not seconds <= ladder_budget - study.spent:
             _leave_out(study, k, rung, seconds)
             ended.add(k)
-        elif _run(study, setting, budget, measure).status == STOPPED:
+        elif _run(study, setting, ladder_budget, measure).status == STOPPED:
             ended.add(k)
     return study
 

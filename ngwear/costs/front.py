@@ -66,10 +66,11 @@ def power_law(
 ) -> float:
     """Seconds of the next, finer value after the measured ones: ``t ~ value^-p``.
 
-    p is that of the two finest, between half the first guess ``growth`` and 3; the guess for a single one.
+    p is that of the two finest, between the first guess ``growth`` and 3; the guess for a single one. Fixed costs make
+    coarse runs alike, so that less than the guess says nothing of finer ones.
     """
     p = growth
     if len(values) > 1 and values[-2] > values[-1] > 0:
         p = math.log(seconds[-1] / seconds[-2]) / math.log(values[-2] / values[-1])
-        p = min(max(p, 0.5 * growth), 3.0)
+        p = min(max(p, growth), 3.0)
     return min(seconds[-1] * (values[-1] / wanted) ** p, highest)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -14,7 +15,7 @@ from ngwear.sliding.scene import PinScene
 MESH = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # times the scene's element edge
 JUMPS = (16.0, 4.0, 1.0, 0.25, 0.0625)  # times its wear_error: the jump changes with the square root
 STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)
-BLOCK = (0.5, 0.7, 1.0, 1.4, 2.0)
+BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # as far as the track leaves room
 FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)
 EACH_BEGINS = 0.02  # wear_error from which jumps are coarsened in a scene that solves each stroke
 AnyScene = Scene | PinScene
@@ -93,7 +94,7 @@ def _scaled(
 
 def _mesh(scene: Scene) -> Knob:
     """Element edges near and far by one factor, those of the mounting mesh as far as they must follow."""
-    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.patch, MESH, 1.0, unit=" mm")
+    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.patch, MESH, 1.2, unit=" mm")
 
     def apply(scene: Scene, patch: float) -> Scene:
         old = scene.accuracy
@@ -143,13 +144,15 @@ def _foldings_of_wear(scene: Scene, tolerance: float) -> list[Folding]:
     return [] if folding is None else [folding]
 
 
-def _arms(own: float, folded: Callable[[float], Sequence[Folding]]) -> list[Knob]:
-    """Tolerances of folding that differ in the arms kept; no knob if none does."""
+def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: bool = False) -> list[Knob]:
+    """Tolerances of folding that differ in the arms kept, at least one if ``needed``; no knob if none does."""
     found: dict[tuple[tuple[float, ...], ...], float] = {}
     for tolerance in (own, *FOLDING):
-        found.setdefault(tuple(f.kept.times for f in folded(tolerance)), tolerance)
+        kept = tuple(f.kept.times for f in folded(tolerance))
+        if all(kept) or not needed:
+            found.setdefault(kept, tolerance)
     values = sorted(found.values(), reverse=True)
-    if len(values) < 2:
+    if len(values) < 2 or own not in values:
         return []
     counts = [max(len(f.kept.times) for f in folded(value)) for value in values]
     labels = [f"{n} arm{'' if n == 1 else 's'}" for n in counts]
@@ -189,9 +192,9 @@ def _pin_knobs(scene: PinScene) -> tuple[Knob, ...]:
             _scaled("column of the memory", "column of the memory [mm]", mesh.column, MESH[1:-1], 0.7, unit=" mm"),
             lambda scene, column: replace(scene, mesh=replace(scene.mesh, column=column)),
         ),
-        Knob(_block_ladder(mesh.reach), block),
+        Knob(_block_ladder(scene), block),
     ]
-    return (*found, *_arms(mesh.folding_error, lambda t: _foldings(scene, series, t)))
+    return (*found, *_arms(mesh.folding_error, lambda t: _foldings(scene, series, t), needed=True))
 
 
 def _foldings(scene: PinScene, series: Any, tolerance: float) -> list[Folding]:
@@ -199,15 +202,17 @@ def _foldings(scene: PinScene, series: Any, tolerance: float) -> list[Folding]:
     return [mesh.folding(series, speed) for speed in scene.speeds]
 
 
-def _block_ladder(reach: float) -> Ladder:
+def _block_ladder(scene: PinScene) -> Ladder:
     """How far the block reaches, over the sheet's thickness; the value is one over it, which falls as for any knob."""
-    reaches = [reach * factor for factor in BLOCK]
+    mesh, room = scene.mesh, scene.pin.track_radius / scene.pin.thickness
+    factors = [f for f in BLOCK if f <= 1 or (f * mesh.beside < room and f * mesh.reach < math.pi * room)]
+    reaches = [mesh.reach * factor for factor in factors]
     return Ladder(
         name="size of the block",
         column="thickness over the block's reach [-]",
         values=tuple(1 / r for r in reaches),
         labels=tuple(f"reach {r:.3g}" for r in reaches),
-        own=BLOCK.index(1.0),
+        own=factors.index(1.0),
         growth=0.7,
         smooth=False,
     )

@@ -83,6 +83,8 @@ def measure(point: Point) -> Measurement:
         found = Measurement(status=STOPPED, message="no time was left", needed=progress.needed(time.time() - sent))
     except NgwearError as error:
         found = Measurement(status=GAVE_UP, message=str(error))
+    except Exception as error:  # a mesher or a solver outside of ngwear: kept as well, or each call would try again
+        found = Measurement(status=GAVE_UP, message=f"{type(error).__name__}: {error}")
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     return replace(found, cpu=time.process_time(), wall=time.time() - sent, memory=memory)
 

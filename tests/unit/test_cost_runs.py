@@ -20,6 +20,28 @@ from ngwear.scenefile import read_scene
 from ngwear.sweep import one_thread_pool, sweep
 
 JUMPS = (("strokes = 4", "strokes = 12"), ('step = "each"', 'step = "jump"'))
+PIN = """
+[scene]
+kind = "pin on plate"
+[material]
+model = "mooney-rivlin"
+c10 = 0.6
+c01 = 0.15
+bulk_modulus = 1500.0
+[material.prony]
+moduli = [0.5, 1.0]
+times = [1e-5, 1e-3]
+reference = "long-term"
+[pin]
+load = 10.0
+[program]
+speeds = [100.0]
+[accuracy]
+patch = 1.0
+column = 0.5
+reach = 2.5
+beside = 2.0
+"""
 AMPLE = 300.0  # seconds, some ten times what the few rungs take
 
 
@@ -78,6 +100,19 @@ def test_arms_are_told_apart_by_what_is_kept(tmp_path, write_sheet):
     assert len(set(kept)) == len(kept)
     assert [len(k) for k in kept] == sorted(len(k) for k in kept)
     assert len(kept[-1]) == len(scene.prony.times)
+
+
+def test_knobs_of_a_pin(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text(PIN, encoding="utf-8")
+    scene = read_scene(file)
+    mesh, column, block, arms = knobs(scene)
+    assert at(scene, [mesh], (0,)).mesh == replace(scene.mesh, patch=2.0, coarse=6.0)
+    assert at(scene, [column], (len(column.ladder.values) - 1,)).mesh == replace(scene.mesh, column=0.125)
+    large = at(scene, [block], (len(block.ladder.values) - 1,)).mesh
+    assert large.reach / scene.mesh.reach == pytest.approx(large.beside / scene.mesh.beside)
+    assert large.beside * scene.pin.thickness < scene.pin.track_radius, "the block ends before the track's centre"
+    assert arms.ladder.labels == ("1 arm", "2 arms"), "steady sliding needs one"
 
 
 def test_files_of_a_study(studied):
