@@ -208,4 +208,4 @@ class _Bar:
         self._bar.set_postfix_str(setting)
 
     def end(self, seconds: float) -> None:
-        self._bar.update(seconds)
+        self._bar.update(min(seconds, self._budget - self._bar.n))  # beyond its total tqdm forgets the total

@@ -101,7 +101,7 @@ def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
     first = max(mesh.own - 1, 0)
     _run(study, rung_of(study.own, 0, first), budget, measure, share=FIRST)
     rung = first - 1
-    while rung >= 0 and not study.rungs(0):
+    while rung >= 0 and not study.rungs(0) and study.spent < budget:
         _run(study, rung_of(study.own, 0, rung), budget, measure)
         rung -= 1
     if mesh.own > first and study.next_seconds(0, mesh.own) <= FIRST * (budget - study.spent):

@@ -49,6 +49,8 @@ def paragraph(scene: str, study: Study, choices: Sequence[Choice], budget: float
     done = sum(run.ok for run in runs)
     parts = [f"{scene}: {done} run{'' if done == 1 else 's'} took {study.spent:.0f} s of the {budget:g} s given."]
     parts.append(_own(study))
+    if study.base != study.own and len(study.ladders) > 1:
+        parts.append(f"To save time the other knobs were tried with {_labelled(study.ladders[0], study.base[0])}.")
     parts.append(_together(study))
     parts += _choices(study, choices)
     parts += _not_run(study)

@@ -196,6 +196,14 @@ def test_too_small_a_budget_says_what_it_would_take():
         climb(LADDERS, DEPTH, 1.0, unknown)
 
 
+def test_base_on_a_coarser_mesh_is_told():
+    study, choices, _ = study_of(8.0)
+    assert study.base == (1, 2)
+    assert "other knobs were tried with edge 0.2" in paragraph("block", study, choices, 8.0).replace(
+        "edge edge", "edge"
+    )
+
+
 def test_same_measurements_same_plan():
     first, again = study_of(12.0), study_of(12.0)
     assert first[2].asked == again[2].asked
