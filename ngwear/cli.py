@@ -1,4 +1,4 @@
-"""The command line: run, verify, explain, plot, compare."""
+"""The command line: run, verify, explain, cost, plot, compare."""
 
 from __future__ import annotations
 
@@ -41,6 +41,15 @@ def _parser() -> argparse.ArgumentParser:
         help="constants that scenes do not give, such as oil_viscosity=1e-7 (MPa s); a wrong name lists all",
     )
     explain.set_defaults(do=_explain)
+    cost = commands.add_parser("cost", help="say what accuracy costs: settings, errors, seconds")
+    cost.add_argument("scene", type=Path, metavar="SCENE.toml")
+    cost.add_argument("--budget", type=float, required=True, metavar="SECONDS", help="wall time of all runs")
+    cost.add_argument(
+        "--out", type=Path, metavar="DIR", help="folder for table, figure and runs; goes on with what is there"
+    )
+    cost.add_argument("--json", action="store_true")
+    cost.add_argument("--quiet", action="store_true", help="no progress bar")
+    cost.set_defaults(do=_cost, again="the same command with the same --out goes on")
     plot = commands.add_parser("plot", help="draw the figures of a run again")
     plot.add_argument("folder", type=Path, metavar="DIR")
     instead = plot.add_mutually_exclusive_group()
@@ -73,7 +82,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"ngwear: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
-        print("ngwear: interrupted; go on with --resume", file=sys.stderr)
+        print(f"ngwear: interrupted; {getattr(options, 'again', 'go on with --resume')}", file=sys.stderr)
         return 130
 
 
@@ -148,6 +157,28 @@ def _explain(options: argparse.Namespace) -> int:
         with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
             found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
     print(json.dumps(found, indent=2) if options.json else "\n".join(lines(found)))
+    return OK
+
+
+def _cost(options: argparse.Namespace) -> int:
+    from ngwear.cost import cost
+    from ngwear.scenefile import read_scene
+
+    scene = read_scene(options.scene)
+    found = cost(scene, budget=options.budget, folder=options.out, progress=not options.quiet)
+    if not any(run.ok for run in found.study.runs.values()):
+        print(f"ngwear: gave up: {found.paragraph}", file=sys.stderr)
+        return GAVE_UP
+    if options.json:
+        print(json.dumps(found.as_dict(), indent=2))
+        return OK
+    print(found.paragraph)
+    for choice, written in zip(found.choices, found.written, strict=True):
+        if written:
+            told = [f"{k} = {v:.6g}" if isinstance(v, float) else f"{k} = {json.dumps(v)}" for k, v in written.items()]
+            print(f"for {100 * choice.target:g} %: {', '.join(told)}")
+    if options.out is not None:
+        print(f"table and figure: {options.out}")
     return OK
 
 

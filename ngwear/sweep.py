@@ -174,17 +174,17 @@ def _feed(
 def _in_processes(function: Any, points: list, waiting: Iterable[int], workers: int, keep: Keep) -> None:
     queue = deque(waiting)
     while queue:
-        with _pool(min(workers, len(queue))) as pool:
+        with one_thread_pool(min(workers, len(queue))) as pool:
             lost = _feed(pool, function, points, queue, workers, keep)
         for i, _ in lost:  # one of them took its worker down: which one shows when each is alone
-            with _pool(1) as pool:
+            with one_thread_pool(1) as pool:
                 again = _feed(pool, function, points, deque([i]), 1, keep)
             for _, error in again:
                 keep(i, Failure.of(error))
 
 
 @contextmanager
-def _pool(workers: int) -> Iterator[Executor]:
+def one_thread_pool(workers: int) -> Iterator[Executor]:
     """Spawned workers of one thread each."""
     with (
         one_thread(),

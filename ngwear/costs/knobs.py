@@ -1,0 +1,218 @@
+"""The knobs of a scene that trade time for error, as ladders, and the scene at any of their rungs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from ngwear.costs.ladder import Ladder, Setting
+from ngwear.materials import Folding
+from ngwear.scene import Scene
+from ngwear.sliding.scene import PinScene
+
+MESH = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # times the scene's element edge
+JUMPS = (16.0, 4.0, 1.0, 0.25, 0.0625)  # times its wear_error: the jump changes with the square root
+STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)
+BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # as far as the track leaves room
+FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)
+EACH_BEGINS = 0.02  # wear_error from which jumps are coarsened in a scene that solves each stroke
+AnyScene = Scene | PinScene
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A ladder and what a rung of it does to a scene."""
+
+    ladder: Ladder
+    apply: Callable[[Any, float], Any]
+
+
+def knobs(scene: AnyScene) -> tuple[Knob, ...]:
+    """The knobs that the scene's solver really has, the mesh first."""
+    if isinstance(scene, PinScene):
+        return _pin_knobs(scene)
+    found = [_mesh(scene)]
+    if scene.worn_edges and scene.program.strokes > 2 * len(scene.program.cycle):
+        found.append(_jumps(scene))
+    if scene.deactivation is None:
+        found.append(_stress(scene))
+    if scene.prony is not None:
+        found += _arms(scene.accuracy.folding_error, lambda tolerance: _foldings_of_wear(scene, tolerance))
+    return tuple(found)
+
+
+def at(scene: AnyScene, chosen: Sequence[Knob], setting: Setting) -> Any:
+    """The scene at a setting.
+
+    Raises
+    ------
+    SceneError
+        If the scene cannot have it.
+    """
+    for knob, rung in zip(chosen, setting, strict=True):
+        if rung != knob.ladder.own:
+            scene = knob.apply(scene, knob.ladder.values[rung])
+    return scene
+
+
+def changes(scene: AnyScene, other: AnyScene) -> dict[str, Any]:
+    """What to write into a scene's file to make it another, by place; nothing if they are alike."""
+    tables = {"accuracy": "mesh"} if isinstance(scene, PinScene) else {"accuracy": "accuracy", "wear": "wear"}
+    found: dict[str, Any] = {}
+    for table, attribute in tables.items():
+        old, new = getattr(scene, attribute), getattr(other, attribute)
+        places = {field.name: getattr(new, field.name) for field in fields(new)}
+        found |= {f"{table}.{name}": value for name, value in places.items() if value != getattr(old, name)}
+    return found
+
+
+def _scaled(
+    name: str,
+    column: str,
+    own: float,
+    factors: Sequence[float],
+    growth: float,
+    *,
+    unit: str = "",
+    below: float = float("inf"),
+    smooth: bool = True,
+) -> Ladder:
+    """Multiples of the scene's value."""
+    values = [own * factor for factor in factors if factor == 1.0 or own * factor < below]
+    return Ladder(
+        name=name,
+        column=column,
+        values=tuple(values),
+        labels=tuple(f"{value:.4g}{unit}" for value in values),
+        own=values.index(own),
+        growth=growth,
+        smooth=smooth,
+    )
+
+
+def _mesh(scene: Scene) -> Knob:
+    """Element edges near and far by one factor, those of the mounting mesh as far as they must follow."""
+    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.patch, MESH, 1.2, unit=" mm")
+
+    def apply(scene: Scene, patch: float) -> Scene:
+        old = scene.accuracy
+        coarse, mounting = old.coarse * patch / old.patch, max(old.mounting, patch)
+        return replace(scene, accuracy=replace(old, patch=patch, coarse=coarse, mounting=mounting))
+
+    return Knob(ladder, apply)
+
+
+def _jumps(scene: Scene) -> Knob:
+    """Tolerances of the cycle jump, and each stroke solved at the end."""
+    each = scene.wear.step == "each"
+    start = EACH_BEGINS if each else scene.accuracy.wear_error
+    values = [start * factor for factor in JUMPS if start * factor < 1] + [0.0]
+    ladder = Ladder(
+        name="jumps over strokes",
+        column="accuracy.wear_error [-]",
+        values=tuple(values),
+        labels=(*(f"wear_error {value:.4g}" for value in values[:-1]), "each stroke solved"),
+        own=len(values) - 1 if each else values.index(start),
+        growth=0.5,
+        most_solves=scene.program.strokes,
+    )
+
+    def apply(scene: Scene, error: float) -> Scene:
+        if error == 0:
+            return replace(scene, wear=replace(scene.wear, step="each"))
+        wear, accuracy = replace(scene.wear, step="jump"), replace(scene.accuracy, wear_error=error)
+        return replace(scene, wear=wear, accuracy=accuracy)
+
+    return Knob(ladder, apply)
+
+
+def _stress(scene: Scene) -> Knob:
+    own = scene.accuracy.stress_error
+    ladder = _scaled("stress criterion", "accuracy.stress_error [-]", own, STRESS, 0.3, below=1.0)
+    ladder = replace(ladder, labels=tuple(f"stress_error {label}" for label in ladder.labels))
+    return Knob(ladder, lambda scene, error: replace(scene, accuracy=replace(scene.accuracy, stress_error=error)))
+
+
+def _refolded(scene: Scene, tolerance: float) -> Scene:
+    return replace(scene, accuracy=replace(scene.accuracy, folding_error=tolerance))
+
+
+def _foldings_of_wear(scene: Scene, tolerance: float) -> list[Folding]:
+    folding = _refolded(scene, tolerance).folding
+    return [] if folding is None else [folding]
+
+
+def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: bool = False) -> list[Knob]:
+    """Tolerances of folding that differ in the arms kept, at least one if ``needed``; no knob if none does."""
+    found: dict[tuple[tuple[float, ...], ...], float] = {}
+    for tolerance in (own, *FOLDING):
+        kept = tuple(f.kept.times for f in folded(tolerance))
+        if all(kept) or not needed:
+            found.setdefault(kept, tolerance)
+    values = sorted(found.values(), reverse=True)
+    if len(values) < 2 or own not in values:
+        return []
+    counts = [max(len(f.kept.times) for f in folded(value)) for value in values]
+    labels = [f"{n} arm{'' if n == 1 else 's'}" for n in counts]
+    if len(set(labels)) < len(labels):
+        labels = [f"{label} (folding_error {value:.4g})" for label, value in zip(labels, values, strict=True)]
+    ladder = Ladder(
+        name="arms of the memory",
+        column="accuracy.folding_error [-]",
+        values=tuple(values),
+        labels=tuple(labels),
+        own=values.index(own),
+        growth=0.05,
+        smooth=False,
+    )
+
+    def apply(scene: AnyScene, tolerance: float) -> AnyScene:
+        if isinstance(scene, PinScene):
+            return replace(scene, mesh=replace(scene.mesh, folding_error=tolerance))
+        return _refolded(scene, tolerance)
+
+    return [Knob(ladder, apply)]
+
+
+def _pin_knobs(scene: PinScene) -> tuple[Knob, ...]:
+    mesh, series = scene.mesh, scene.pin.series
+
+    def edges(scene: PinScene, patch: float) -> PinScene:
+        return replace(scene, mesh=replace(scene.mesh, patch=patch, coarse=mesh.coarse * patch / mesh.patch))
+
+    def block(scene: PinScene, shortness: float) -> PinScene:
+        reach = 1 / shortness
+        return replace(scene, mesh=replace(scene.mesh, reach=reach, beside=mesh.beside * reach / mesh.reach))
+
+    found = [
+        Knob(_scaled("element edge", "element edge [mm]", mesh.patch, MESH[1:-1], 2.0, unit=" mm"), edges),
+        Knob(
+            _scaled("column of the memory", "column of the memory [mm]", mesh.column, MESH[1:-1], 0.7, unit=" mm"),
+            lambda scene, column: replace(scene, mesh=replace(scene.mesh, column=column)),
+        ),
+        Knob(_block_ladder(scene), block),
+    ]
+    return (*found, *_arms(mesh.folding_error, lambda t: _foldings(scene, series, t), needed=True))
+
+
+def _foldings(scene: PinScene, series: Any, tolerance: float) -> list[Folding]:
+    mesh = replace(scene.mesh, folding_error=tolerance)
+    return [mesh.folding(series, speed) for speed in scene.speeds]
+
+
+def _block_ladder(scene: PinScene) -> Ladder:
+    """How far the block reaches, over the sheet's thickness; the value is one over it, which falls as for any knob."""
+    mesh, room = scene.mesh, scene.pin.track_radius / scene.pin.thickness
+    factors = [f for f in BLOCK if f <= 1 or (f * mesh.beside < room and f * mesh.reach < math.pi * room)]
+    reaches = [mesh.reach * factor for factor in factors]
+    return Ladder(
+        name="size of the block",
+        column="thickness over the block's reach [-]",
+        values=tuple(1 / r for r in reaches),
+        labels=tuple(f"reach {r:.3g}" for r in reaches),
+        own=factors.index(1.0),
+        growth=0.7,
+        smooth=False,
+    )

@@ -1,0 +1,70 @@
+"""How fast an error falls with a knob, and how far off the finest value still is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+LOWEST, HIGHEST = 0.05, 8.0  # orders that are told from none at all
+RATIO_BITS = 60
+
+
+def observed_order(values: Sequence[float], results: Sequence[float]) -> float | None:
+    """Order p of ``result = limit + c value^p`` through the three finest; None if they do not tell.
+
+    Solves ``(a^p - b^p) / (b^p - c^p) = (q_a - q_b) / (q_b - q_c)`` for p; a value may be 0.
+
+    Parameters
+    ----------
+    values : sequence of float
+        Settings of the knob, falling.
+    results : sequence of float
+        What was found with each.
+    """
+    if len(values) < 3:
+        return None
+    a, b, c = values[-3:]
+    first, second = (results[-3] - results[-2]), (results[-2] - results[-1])
+    if second == 0 or first / second <= 0:
+        return None
+    wanted = first / second
+
+    def excess(p: float) -> float:
+        """Rises with p."""
+        return ((a / b) ** p - 1) / (1 - (c / b) ** p) - wanted
+
+    low, high = LOWEST, HIGHEST
+    if excess(low) > 0 or excess(high) < 0:
+        return None
+    for _ in range(RATIO_BITS):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if excess(middle) > 0 else (middle, high)
+    return 0.5 * (low + high)
+
+
+def relative(result: float, reference: float) -> float:
+    """Relative difference; 0 if both are 0."""
+    if result == reference:
+        return 0.0
+    return abs(result - reference) / abs(reference) if reference else math.inf
+
+
+def reference_error(values: Sequence[float], results: Sequence[float], *, smooth: bool = True) -> float | None:
+    """Estimate of the finest result's own relative error; None for a single one.
+
+    The last change, extrapolated by the observed order; the whole of it where no order shows, none with a value of 0.
+
+    Parameters
+    ----------
+    values, results : sequence of float
+        As of ``observed_order``.
+    smooth : bool
+        Whether there may be an order.
+    """
+    if values[-1] == 0:
+        return 0.0
+    if len(values) < 2:
+        return None
+    change = relative(results[-2], results[-1])
+    p = observed_order(values, results) if smooth else None
+    return change if p is None else min(change, change / ((values[-2] / values[-1]) ** max(p, 0.5) - 1))

@@ -1,0 +1,231 @@
+"""Cost studies of real, tiny scenes: knobs, files, resumption, the command line."""
+
+import csv
+import io
+import json
+import math
+from dataclasses import replace
+
+import pytest
+from conftest import REMEMBERS
+
+from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
+from ngwear.cost import CSV, JSON, PNG, RUNS, cost
+from ngwear.costs import knobs as knobs_of
+from ngwear.costs.knobs import at, knobs
+from ngwear.costs.ladder import STOPPED
+from ngwear.costs.measure import Limited, Point, measure
+from ngwear.errors import SceneError
+from ngwear.scenefile import read_scene
+from ngwear.sweep import one_thread_pool, sweep
+
+JUMPS = (("strokes = 4", "strokes = 12"), ('step = "each"', 'step = "jump"'))
+PIN = """
+[scene]
+kind = "pin on plate"
+[material]
+model = "mooney-rivlin"
+c10 = 0.6
+c01 = 0.15
+bulk_modulus = 1500.0
+[material.prony]
+moduli = [0.5, 1.0]
+times = [1e-5, 1e-3]
+reference = "long-term"
+[pin]
+load = 10.0
+[program]
+speeds = [100.0]
+[accuracy]
+patch = 1.0
+column = 0.5
+reach = 2.5
+beside = 2.0
+"""
+AMPLE = 300.0  # seconds, some ten times what the few rungs take
+
+
+def names(scene):
+    return [knob.ladder.name for knob in knobs(scene)]
+
+
+def few_rungs(patch):
+    patch.setattr(knobs_of, "MESH", (2.0, 1.0))
+    patch.setattr(knobs_of, "JUMPS", (1.0,))
+    patch.setattr(knobs_of, "STRESS", (2.0, 1.0))
+
+
+@pytest.fixture(scope="module")
+def studied(tmp_path_factory, write_sheet):
+    """A study of a few rungs, and its scene's file."""
+    folder = tmp_path_factory.mktemp("cost")
+    file = write_sheet(folder, *JUMPS)
+    with pytest.MonkeyPatch.context() as patch:
+        few_rungs(patch)
+        found = cost(read_scene(file), budget=AMPLE, folder=folder / "out")
+    return found, folder / "out", file
+
+
+def test_only_knobs_that_the_scene_calls_for(sheet, seal, tmp_path, write_sheet):
+    assert names(sheet) == ["element edge", "jumps over strokes", "stress criterion"]
+    assert names(seal) == ["element edge", "jumps over strokes", "stress criterion"]
+    filled = read_scene(write_sheet(tmp_path / "filled", *REMEMBERS))
+    assert names(filled) == ["element edge", "jumps over strokes", "stress criterion", "arms of the memory"]
+    (contact,) = sheet.contacts
+    unworn = replace(sheet, contacts=(replace(contact, specific_wear_rate=0.0),))
+    assert "jumps over strokes" not in names(unworn)
+    short = replace(sheet, program=replace(sheet.program, strokes=2))
+    assert "jumps over strokes" not in names(short)
+
+
+def test_rungs_change_their_knob_and_nothing_else(seal):
+    mesh, jump, stress = knobs(seal)
+    for knob in (mesh, jump, stress):
+        values = knob.ladder.values
+        assert list(values) == sorted(values, reverse=True)
+        assert at(seal, [knob], (knob.ladder.own,)) is seal
+    fine = at(seal, [mesh], (mesh.ladder.own + 1,))
+    assert fine.accuracy == replace(seal.accuracy, patch=0.005, coarse=0.1)
+    coarse = at(seal, [mesh], (mesh.ladder.own - 2,))
+    assert coarse.accuracy == replace(seal.accuracy, patch=0.04, coarse=0.8, mounting=0.04)
+    each = at(seal, [jump], (len(jump.ladder.values) - 1,))
+    assert (each.wear.step, each.accuracy) == ("each", seal.accuracy)
+    assert at(each, [knobs(each)[1]], (0,)).wear.step == "jump"
+
+
+def test_arms_are_told_apart_by_what_is_kept(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, *REMEMBERS))
+    arms = knobs(scene)[-1]
+    kept = [at(scene, [arms], (i,)).folding.kept.times for i in range(len(arms.ladder.values))]
+    assert len(set(kept)) == len(kept)
+    assert [len(k) for k in kept] == sorted(len(k) for k in kept)
+    assert len(kept[-1]) == len(scene.prony.times)
+
+
+def test_knobs_of_a_pin(tmp_path):
+    file = tmp_path / "scene.toml"
+    file.write_text(PIN, encoding="utf-8")
+    scene = read_scene(file)
+    mesh, column, block, arms = knobs(scene)
+    assert at(scene, [mesh], (0,)).mesh == replace(scene.mesh, patch=2.0, coarse=6.0)
+    assert at(scene, [column], (len(column.ladder.values) - 1,)).mesh == replace(scene.mesh, column=0.125)
+    large = at(scene, [block], (len(block.ladder.values) - 1,)).mesh
+    assert large.reach / scene.mesh.reach == pytest.approx(large.beside / scene.mesh.beside)
+    assert large.beside * scene.pin.thickness < scene.pin.track_radius, "the block ends before the track's centre"
+    assert arms.ladder.labels == ("1 arm", "2 arms"), "steady sliding needs one"
+
+
+def test_files_of_a_study(studied):
+    found, out, _ = studied
+    rows = list(csv.DictReader(io.StringIO((out / CSV).read_text(encoding="utf-8"))))
+    assert len(rows) == len(found.study.runs)
+    assert all("[" in column for column in rows[0])
+    assert float(rows[0]["CPU time [s]"]) > 0
+    assert float(rows[0]["peak memory [MB]"]) > 10
+    told = json.loads((out / JSON).read_text(encoding="utf-8"))
+    assert told == json.loads(json.dumps(found.as_dict()))
+    assert (out / PNG).read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+    assert {q.split(" [")[0] for q in found.study.quantities} == {
+        *("maximum depth", "worn area", "peak pressure", "roller contact width", "roller friction force")
+    }
+    force = [run.values["roller friction force [N/mm]"] for run in found.study.runs.values()]
+    assert force == pytest.approx([0.05] * len(force), rel=1e-3), "mu F"
+
+
+def test_errors_are_against_each_ladders_finest_run(studied):
+    study = studied[0].study
+    for k, ladder in enumerate(study.ladders):
+        rungs = study.rungs(k)
+        finest = rungs[max(rungs)].values[study.main]
+        for i, run in rungs.items():
+            assert study.rung_error(k, i, study.main) == abs(run.values[study.main] - finest) / finest
+        assert max(rungs) == len(ladder.values) - 1, "the budget is ample"
+    assert study.own_error(1, study.main) == 0.0, "each stroke solved"
+
+
+def test_second_call_runs_nothing_and_finds_the_same(studied, monkeypatch):
+    found, out, file = studied
+    few_rungs(monkeypatch)
+    before = {p.name: p.stat().st_mtime_ns for p in (out / RUNS).iterdir()}
+    monkeypatch.setattr(Limited, "submit", lambda *_: pytest.fail("a run was begun"))
+    again = cost(read_scene(file), budget=AMPLE, folder=out, figures=False)
+    assert again.as_dict() == found.as_dict()
+    assert {p.name: p.stat().st_mtime_ns for p in (out / RUNS).iterdir()} == before
+
+
+def test_a_study_that_was_killed_goes_on(studied, monkeypatch, tmp_path):
+    import shutil
+
+    found, out, file = studied
+    few_rungs(monkeypatch)
+    folder = tmp_path / "out"
+    shutil.copytree(out, folder)
+    lost = sorted((folder / RUNS).glob("*.pickle"))[0]
+    lost.unlink()
+    begun = []
+    submit = Limited.submit
+    monkeypatch.setattr(Limited, "submit", lambda self, *args: begun.append(args) or submit(self, *args))
+    again = cost(read_scene(file), budget=AMPLE, folder=folder, figures=False)
+    assert len(begun) == 1
+    assert lost.exists()
+    same = [
+        run.values for run in again.study.runs.values() if run.values in [r.values for r in found.study.runs.values()]
+    ]
+    assert len(same) >= len(found.study.runs) - 1
+
+
+def test_a_run_out_of_time_is_stopped_and_says_what_it_would_take(sheet):
+    long = replace(sheet, program=replace(sheet.program, strokes=100_000))
+    with one_thread_pool(1) as workers:
+        (outcome,) = sweep(measure, [Point(long)], executor=Limited(workers, 6.0))
+    assert outcome.result.status == STOPPED
+    assert 5.0 < outcome.result.wall < 20.0
+    assert outcome.result.needed > 100.0
+
+
+def test_a_run_that_gives_up_says_why(tmp_path, write_sheet):
+    scene = read_scene(write_sheet(tmp_path, ("force = 0.5", "force = 500")))
+    found = measure(Point(scene))
+    assert found.status == "gave up"
+    assert "no equilibrium" in found.message
+
+
+@pytest.mark.parametrize("budget", [0.0, -3.0, math.nan, math.inf])
+def test_budget_must_be_positive(sheet, budget):
+    with pytest.raises(SceneError, match=r"cost\.budget"):
+        cost(sheet, budget=budget)
+
+
+def test_command_line_refuses_in_one_line(sheet_file, capsys, tmp_path):
+    assert main(["cost", str(sheet_file), "--budget", "-1"]) == BAD_INPUT
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.startswith("ngwear: cost.budget = -1.0: must be")
+    assert main(["cost", str(sheet_file), "--budget", "0.05"]) == BAD_INPUT
+    assert "does not reach for one run" in capsys.readouterr().err
+    assert main(["cost", str(tmp_path / "nowhere.toml"), "--budget", "10"]) == BAD_INPUT
+    with pytest.raises(SystemExit):
+        main(["cost", str(sheet_file)])
+
+
+def test_command_line_when_every_rung_gives_up(tmp_path, write_sheet, monkeypatch, capsys):
+    few_rungs(monkeypatch)
+    monkeypatch.setattr(knobs_of, "STRESS", (1.0,))
+    file = write_sheet(tmp_path, ("force = 0.5", "force = 500"), ("strokes = 4", "strokes = 1"))
+    assert main(["cost", str(file), "--budget", str(AMPLE), "--quiet"]) == GAVE_UP
+    assert "no equilibrium" in capsys.readouterr().err
+
+
+def test_json_on_the_command_line(studied, monkeypatch, capsys):
+    found, out, file = studied
+    few_rungs(monkeypatch)
+    assert main(["cost", str(file), "--budget", str(AMPLE), "--out", str(out), "--json", "--quiet"]) == OK
+    told = json.loads(capsys.readouterr().out)
+    assert told == json.loads(json.dumps(found.as_dict()))
+    keys = {"scene", "budget [s]", "in words", "main quantity", "ladders", "runs", "front", "recommended", "not run"}
+    assert keys <= set(told)
+    assert {"name", "reference", "errors against the reference [-]", "observed order [-]"} <= set(told["ladders"][0])
+    assert {"setting", "status", "CPU time [s]", "wall time [s]", "peak memory [MB]"} <= set(told["runs"][0])
+    assert main(["cost", str(file), "--budget", str(AMPLE), "--out", str(out), "--quiet"]) == OK
+    shown = capsys.readouterr().out
+    assert found.paragraph in shown
