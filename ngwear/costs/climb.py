@@ -142,7 +142,7 @@ def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:
     """Note a rung for which there is no time, and the scene's own if it is finer still."""
     study.left_out[rung_of(study.base, k, rung)] = seconds
     own = study.ladders[k].own
-    if own > rung:
+    if own > rung and rung_of(study.base, k, own) not in study.runs:
         study.left_out[rung_of(study.base, k, own)] = study.next_seconds(k, own)
 
 

@@ -49,7 +49,7 @@ def paragraph(scene: str, study: Study, choices: Sequence[Choice], budget: float
     done = sum(run.ok for run in runs)
     parts = [f"{scene}: {done} run{'' if done == 1 else 's'} took {study.spent:.0f} s of the {budget:g} s given."]
     parts.append(_own(study))
-    if study.base != study.own and len(study.ladders) > 1:
+    if study.base != study.own and any(len(study.rungs(k)) > 1 for k in range(1, len(study.ladders))):
         parts.append(f"To save time the other knobs were tried with {_labelled(study.ladders[0], study.base[0])}.")
     parts.append(_together(study))
     parts += _choices(study, choices)
@@ -113,7 +113,8 @@ def _others(study: Study, setting: Setting) -> str:
 def _choices(study: Study, choices: Sequence[Choice]) -> list[str]:
     out = []
     for (setting, measured), alike in itertools.groupby(choices, key=lambda c: (c.setting, c.measured)):
-        goals = " and ".join(f"{100 * choice.target:g} %" for choice in alike)
+        *first, last = (f"{100 * choice.target:g} %" for choice in alike)
+        goals = f"{', '.join(first)} and {last}" if first else last
         goal = f"For {goals} of the {name_of(study.main)}"
         if setting is None:
             out.append(f"{goal}: not reached within the budget{_least(study)}.")

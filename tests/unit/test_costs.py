@@ -176,6 +176,9 @@ def test_tiny_budget_runs_what_it_can_and_promises_nothing():
     assert all(choice.setting is None for choice in choices)
     text = paragraph("block", study, choices, 1.05)
     assert "The scene as it stands was not run: it would take about 1 s" in text
+    assert "For 5 %, 1 % and 0.1 % of the maximum depth: not reached" in text
+    assert "were tried with" not in text
+    assert not set(study.left_out) & set(study.runs)
     assert [row["error of maximum depth [-]"] for row in table(study)] == [""]
 
 
