@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import Any
 
 from ngwear.errors import require
 
-if TYPE_CHECKING:  # they are checked here while they are built
-    from ngwear.scene import ContactSpec, Scene
 
-
-def refuse_in_contact(contact: ContactSpec) -> None:
-    """SceneError for a contact whose effects contradict each other."""
+def refuse_in_contact(contact: Any) -> None:
+    """SceneError for a ``ContactSpec`` (which calls this as it is built) whose effects contradict each other."""
     place, law, counter = f"contact '{contact.name}'", contact.friction_law, contact.counter_wear_rate
     still = "a surface that stands still (slides = false)"
 
@@ -40,8 +37,8 @@ def refuse_in_contact(contact: ContactSpec) -> None:
     require(wear is None or contact.wears, f"{place}.wear_law", wear, remedy)
 
 
-def refuse_in_scene(scene: Scene) -> None:
-    """SceneError for parts of a scene that contradict each other."""
+def refuse_in_scene(scene: Any) -> None:
+    """SceneError for parts of a ``Scene``, which calls this as it is built, that contradict each other."""
     for stroke in scene.program.cycle:
         place, known = f"program.stroke '{stroke.name}'", stroke.speed is not None
         remedy = "a sealed pressure needs a [fluid] table that says which edges it may reach"
@@ -66,7 +63,7 @@ def refuse_in_scene(scene: Scene) -> None:
         _refuse_with_deactivation(scene)
 
 
-def _refuse_with_deactivation(scene: Scene) -> None:
+def _refuse_with_deactivation(scene: Any) -> None:
     remedy = "must be 'never' in a scene that deactivates elements: its mesh loses them and is not made anew"
     require(scene.wear.remesh == "never", "wear.remesh", scene.wear.remesh, remedy)
     remedy = "elements can be deactivated in rubber without memory only: leave one of both out"

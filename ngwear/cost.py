@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import Any
 
 from ngwear import __version__
+from ngwear.cost_runs import DEPTH, PEAK, Limited, Point, measure
 from ngwear.costs.climb import Choice, climb, confirm
 from ngwear.costs.knobs import Knob, at, changes, knobs
 from ngwear.costs.ladder import STOPPED, Measurement, Setting, told
-from ngwear.costs.measure import DEPTH, PEAK, Limited, Point, measure
 from ngwear.costs.report import as_dict, table
 from ngwear.costs.study import Study
 from ngwear.costs.words import paragraph

@@ -11,10 +11,10 @@ from conftest import REMEMBERS
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.cost import CSV, JSON, PNG, RUNS, cost
+from ngwear.cost_runs import Limited, Point, measure
 from ngwear.costs import knobs as knobs_of
 from ngwear.costs.knobs import at, knobs
 from ngwear.costs.ladder import STOPPED
-from ngwear.costs.measure import Limited, Point, measure
 from ngwear.errors import SceneError
 from ngwear.scenefile import read_scene
 from ngwear.sweep import one_thread_pool, sweep
