@@ -54,11 +54,6 @@ def refuse_in_scene(scene: Any) -> None:
     remedy = "only rubber with memory changes while it sits: give [material.prony], or leave rest out"
     require(scene.prony is not None or math.isinf(rest), "program.rest", rest, remedy)
 
-    for i, support in enumerate(scene.supports):
-        held = sorted(set(support.edges) & set(scene.worn_edges)) if support.x and support.y else []
-        remedy = "a contact wears these edges, which are held in x and y and so cannot yield: hold others"
-        require(not held, f"support[{i}].edges", held, remedy)
-
     if scene.deactivation is not None:
         _refuse_with_deactivation(scene)
 

@@ -33,7 +33,6 @@ FRICTIONLESS, WEARLESS = ("friction = 0.1\n", ""), ("specific_wear_rate = 1.0e-3
             r"'roller'\.friction.*stands still.*give a number",
         ),
         ((("strokes = 4", "strokes = 4\nrest = 60.0"),), r"program\.rest = 60\.0: only rubber with memory"),
-        ((('edges = ["bottom"]', 'edges = ["bottom", "top"]'),), r"support\[0\]\.edges = \['top'\]: a contact wears"),
         ((("specific_wear_rate = 1.0e-3", "counter_wear_rate = 1.0e-5"),), r"counter_wear_rate.*specific_wear_rate as"),
         ((("travel = 10.0", "travel = 10.0\npressure = 1.0"),), r"pressure = 1\.0: .*needs a \[fluid\] table"),
     ],
@@ -41,8 +40,3 @@ FRICTIONLESS, WEARLESS = ("friction = 0.1\n", ""), ("specific_wear_rate = 1.0e-3
 def test_contradictions_say_which_and_why(tmp_path, write_sheet, changes, message):
     with pytest.raises(SceneError, match=message):
         read_scene(write_sheet(tmp_path, *changes))
-
-
-def test_edges_held_in_one_direction_may_wear(tmp_path, write_sheet):
-    held = ('edges = ["bottom"]', 'edges = ["bottom"]\n\n[[support]]\nedges = ["top"]\ny = false')
-    assert read_scene(write_sheet(tmp_path, held)).supports[1].edges == ("top",)
