@@ -29,18 +29,24 @@ COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "friction force")}
 
 
-def coarser(scene: Scene) -> Scene:
-    """The scene with elements of twice the edge and jumps that may err by twice as much."""
+def scaled(scene: Scene, factor: float) -> Scene:
+    """The scene with elements of so many times the edge, and jumps that may err by as many times as much."""
     accuracy = scene.accuracy
-    coarse = replace(
+    patch = factor * accuracy.patch
+    changed = replace(
         accuracy,
-        patch=COARSER * accuracy.patch,
-        coarse=COARSER * accuracy.coarse,
-        mounting=max(accuracy.mounting, COARSER * accuracy.patch),
-        stress_error=min(1.0, COARSER**2 * accuracy.stress_error),
-        wear_error=min(0.5, COARSER * accuracy.wear_error),
+        patch=patch,
+        coarse=factor * accuracy.coarse,
+        mounting=max(accuracy.mounting, patch),
+        stress_error=min(1.0, factor**2 * accuracy.stress_error),
+        wear_error=min(0.5, factor * accuracy.wear_error),
     )
-    return replace(scene, accuracy=coarse, save=replace(scene.save, strokes=(), vtk=False))
+    return replace(scene, accuracy=changed)
+
+
+def coarser(scene: Scene) -> Scene:
+    """A scene's companion; it keeps nothing."""
+    return replace(scaled(scene, COARSER), save=replace(scene.save, strokes=(), vtk=False))
 
 
 def reading(summary: dict[str, Any], rows: list[dict[str, Any]]) -> dict[str, dict[str, float]]:

@@ -13,11 +13,8 @@ Takes some minutes.
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-from ngwear.companion import COARSER, coarser, estimates, reading
+from ngwear.companion import COARSER, coarser, estimates, reading, scaled
 from ngwear.run import run as run_scene
-from ngwear.scene import Scene
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.rod_seal import shipped_scene
 
@@ -27,26 +24,12 @@ LEAST = 1e-3  # relative error that can be told from chance
 BAND = (0.5, 3.0)
 
 
-def finer(scene: Scene) -> Scene:
-    """The scene whose companion it is."""
-    accuracy = scene.accuracy
-    fine = replace(
-        accuracy,
-        patch=accuracy.patch / COARSER,
-        coarse=accuracy.coarse / COARSER,
-        mounting=max(accuracy.patch, accuracy.mounting / COARSER),
-        stress_error=accuracy.stress_error / COARSER**2,
-        wear_error=accuracy.wear_error / COARSER,
-    )
-    return replace(scene, accuracy=fine)
-
-
 def run() -> list[Check]:
     """Run the case."""
     checks = []
     for folder in FOLDERS:
         watch, scene = Stopwatch(), shipped_scene(folder=folder)
-        results = [run_scene(s, figures=False) for s in (coarser(scene), scene, finer(scene))]
+        results = [run_scene(s, figures=False) for s in (coarser(scene), scene, scaled(scene, 1 / COARSER))]
         coarse, mine, fine = (reading(r.summary, r.recorder.rows) for r in results)
         stated, true = estimates(mine, coarse), estimates(mine, fine)
         for name in stated:
