@@ -39,7 +39,7 @@ def explain(
     MeshError
         If the section cannot be meshed.
     """
-    from ngwear.explaining.costs import costs
+    from ngwear.explaining.brought import costs
     from ngwear.explaining.left_out import left_out
     from ngwear.explaining.pressing import press
     from ngwear.mounting import unworn_body
@@ -135,7 +135,7 @@ def solver_in_words(problem: Problem, unsymmetric: Sequence[str]) -> str:
 
 def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
     """Memory of what effects keep from step to step [MB], without their share of the matrix."""
-    from ngwear.explaining.costs import MEGABYTE
+    from ngwear.explaining.brought import MEGABYTE
     from ngwear.explaining.pressing import history_points
 
     strokes, outline = len(scene.program.cycle), len(stage.body.contour)
