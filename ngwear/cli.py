@@ -6,11 +6,12 @@ import argparse
 import json
 import logging
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ngwear import __version__
-from ngwear.errors import NgwearError, ResultError
+from ngwear.errors import NgwearError, ResultError, SceneError
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
 
@@ -25,6 +26,12 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--resume", action="store_true", help="go on with the run in DIR")
     run.add_argument("--quiet", action="store_true", help="no progress bar")
     run.add_argument("--alone", action="store_true", help="no coarser run beside it: the mesh's error is not estimated")
+    run.add_argument(
+        "--accuracy",
+        metavar="PRESET|ERROR",
+        help="draft, engineering or reference, or the relative error of the depth to reach, such as 0.01, instead of "
+        "the scene's settings",
+    )
     run.set_defaults(do=_run)
     verify = commands.add_parser("verify", help="compare with references that others derived")
     verify.add_argument("cases", nargs="*", metavar="CASE")
@@ -92,6 +99,8 @@ def _run(options: argparse.Namespace) -> int:
     from ngwear.sliding.scene import PinScene
 
     scene = read_scene(options.scene)
+    if options.accuracy is not None:
+        scene = _with_accuracy(scene, options.accuracy)
     how = {"out": options.out, "resume": options.resume, "progress": not options.quiet}
     if isinstance(scene, PinScene):
         from ngwear.run_pin import run_pin
@@ -101,6 +110,8 @@ def _run(options: argparse.Namespace) -> int:
         from ngwear.companion import run_stated
         from ngwear.run import run
 
+        if scene.accuracy.error is not None:
+            from ngwear.adaptive import run_to_error as run_stated
         summary = (run if options.alone else run_stated)(scene, **how, throw=False).summary
     if summary["status"] != COMPLETED:
         print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
@@ -114,9 +125,27 @@ def _run(options: argparse.Namespace) -> int:
     return OK
 
 
+def _with_accuracy(scene: Any, asked: str) -> Any:
+    """The scene by a preset, or to an error."""
+    from ngwear.accuracy import PRESETS, Accuracy
+    from ngwear.sliding.scene import PinScene
+
+    if isinstance(scene, PinScene):
+        raise SceneError("--accuracy", asked, "is for wear: the meshes of a pin are in its scene's [accuracy]")
+    try:
+        new = Accuracy(error=float(asked))
+    except SceneError:
+        raise
+    except ValueError:
+        if asked not in PRESETS:
+            raise SceneError("--accuracy", asked, f"must be one of {list(PRESETS)}, or a number below 1") from None
+        new = Accuracy.preset(asked)
+    return replace(scene, accuracy=scene.accuracy.given(new))
+
+
 def _print_table(values: dict[str, Any]) -> None:
     for name, value in values.items():
-        if isinstance(value, dict):
+        if isinstance(value, dict | list):
             continue
         print(f"{name:45s} {value:.6g}" if isinstance(value, float) else f"{name:45s} {value}")
 

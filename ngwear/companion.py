@@ -1,107 +1,180 @@
-"""What a run says of its own error: the same scene once more, coarser in every setting, and how far both are apart.
+"""What a run says of its own error: the same scene twice more, two and four times coarser in every setting.
 
-A hierarchical estimate of what is read off, mesh and wear step together. With elements of twice the edge, and jumps
-that may err by twice as much, an error of first order doubles: what both runs differ by is the error of the finer one.
-An error of second order would be a third of that, one of order 1/2 two and a half times as large. It cannot see what
-both runs share: the outline's points, the laws and their constants, and errors that happen to cancel.
+A hierarchical estimate of what is read off, mesh and wear steps together: the companions' elements have edges of two
+and four times the length, and their jumps may err by two and four times as much. ``ngwear.seen_order`` tells from all
+three in which order they converge, and what that leaves in the finest.
+
+By where a mesh happens to put its nodes, a peak of pressure or the end of a contact errs by another amount at each
+stroke. So histories are compared, at the same strokes of the last half of the run, and the error is that of their
+mean square.
+
+The estimate cannot see what all three share: the outline's points, the laws and their constants, and steps that the
+scene prescribes (``wear.step`` other than ``"jump"``). Two of these are known separately; they are stated by their
+names and added: arms of the memory that are folded away err by a bounded share of the stress, and prescribed steps by
+what the embedded estimate says of depth and area. Time has no steps: strokes integrate the arms exactly.
 """
 
 from __future__ import annotations
 
 import json
 import os
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from ngwear.accuracy import LEAST_ACROSS
 from ngwear.errors import NgwearError
 from ngwear.results import Recorder, fingerprint
 from ngwear.run import Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
+from ngwear.seen_order import Reading, relative_errors
 from ngwear.sweep import end_with_parent, one_thread
 
 COARSER = 2.0
-FILE = "companion.json"  # in the run's folder: a resumed run finds it there
-WHOLE = {"maximum depth [mm]": "maximum depth [-]", "worn area [mm^2]": "worn area [-]"}
+FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
+WHOLE = {
+    "maximum depth [-]": "maximum depth [mm]",
+    "worn area [-]": "area removed from the outline [mm^2]",
+    "area lost in all [-]": "area lost in all [mm^2]",  # where elements are lost
+}
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
-STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "friction force")}
+FORCE = "friction force"
+STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", FORCE)}
+PLACES = 17  # of the last half of the run, at which histories are read
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with elements of so many times the edge, and jumps that may err by as many times as much."""
     accuracy = scene.accuracy
+    tolerances = {
+        "stress_error": min(1.0, factor**2 * accuracy.stress_error),
+        "wear_error": min(0.5, factor * accuracy.wear_error),
+        "longest_jump": min(1.0, factor * accuracy.longest_jump),
+    }
+    if accuracy.across is not None:
+        across = max(accuracy.across / factor, LEAST_ACROSS)
+        return replace(scene, accuracy=replace(accuracy, across=across, **tolerances))
     patch = factor * accuracy.patch
-    changed = replace(
-        accuracy,
-        patch=patch,
-        coarse=factor * accuracy.coarse,
-        mounting=max(accuracy.mounting, patch),
-        stress_error=min(1.0, factor**2 * accuracy.stress_error),
-        wear_error=min(0.5, factor * accuracy.wear_error),
-    )
-    return replace(scene, accuracy=changed)
+    lengths = {"patch": patch, "coarse": factor * accuracy.coarse, "mounting": max(accuracy.mounting, patch)}
+    changed = replace(accuracy, **lengths, **tolerances)
+    lost = scene.deactivation
+    if lost is not None:
+        lost = replace(lost, depth=max(lost.depth, patch))  # at least one layer
+    return replace(scene, accuracy=changed, deactivation=lost)
 
 
-def coarser(scene: Scene) -> Scene:
+def coarser(scene: Scene, factor: float = COARSER) -> Scene:
     """A scene's companion; it keeps nothing."""
-    return replace(scaled(scene, COARSER), save=replace(scene.save, strokes=(), vtk=False))
+    return replace(scaled(scene, factor), save=replace(scene.save, strokes=(), vtk=False))
 
 
-def reading(summary: dict[str, Any], rows: list[dict[str, Any]]) -> dict[str, dict[str, float]]:
-    """What is read off at the end, by the name of its error: depth, area, and what acts in each kind of stroke."""
-    out = {error: {name: float(summary[name])} for name, error in WHOLE.items()}
-    latest = {row["kind [-]"]: row for row in rows}
-    for kind, row in latest.items():
+def reading(rows: list[dict[str, Any]]) -> dict[str, dict[str, list[float]]]:
+    """What is read off along the last half of a run, by the name of its error: whole, and in each kind of stroke.
+
+    Strokes between those that were solved are interpolated; those looked at without wear are left out. The force of a
+    step is that of its mean, and no matter of where nodes fall: it is read at the end only.
+    """
+    solved = [row for row in rows if row["strokes in one solve [-]"] > 0 or row["stroke [-]"] == 0]
+    kinds = {kind: [row for row in solved if row["kind [-]"] == kind] for kind in dict.fromkeys(map(_kind, solved))}
+    steps = kinds[_kind(solved[-1])]  # where all strokes of a step have worn
+    places = np.linspace(0.5, 1.0, PLACES) * solved[-1]["stroke [-]"]
+
+    def history(column: str, of: list[dict[str, Any]], last: int = PLACES) -> list[float]:
+        return np.interp(places[-last:], [row["stroke [-]"] for row in of], [row[column] for row in of]).tolist()
+
+    out = {error: {column: history(column, steps)} for error, column in WHOLE.items() if column in steps[-1]}
+    for kind, mine in kinds.items():
         for words, error in STROKE.items():
-            found = {f"{kind}: {c}": float(v) for c, v in row.items() if f" {words} " in c and not c.endswith("[-]")}
-            out.setdefault(error, {}).update(found)
+            columns = [c for c in mine[-1] if f" {words} " in c and not c.endswith("[-]")]
+            last = 1 if words == FORCE else PLACES
+            out.setdefault(error, {}).update({f"{kind}: {c}": history(c, mine, last) for c in columns})
     return out
 
 
-def estimates(mine: dict[str, dict[str, float]], other: dict[str, dict[str, float]]) -> dict[str, float]:
-    """Relative error of each quantity from a run's and its companion's readings, of the worst stroke's largest value.
+def _kind(row: dict[str, Any]) -> str:
+    return row["kind [-]"]
 
-    Errors of forces and pressures are taken relative to the largest of their kind: a component that vanishes has none.
+
+def stated(
+    scene: Scene, embedded: Mapping[str, float], mine: Reading, other: Reading, coarsest: Reading | None = None
+) -> dict[str, float]:
+    """All errors that a run states: each quantity's whole, then by its name what of it is known separately.
+
+    Parameters
+    ----------
+    scene : Scene
+    embedded : mapping
+        What the wear steps say of themselves, as in the summary of a run alone.
+    mine, other, coarsest : mapping
+        Readings of the run and its companions; None if the coarsest gave up.
     """
-    out = {}
-    for error, values in mine.items():
-        scale = max((abs(v) for v in values.values()), default=0.0)
-        off = max((abs(v - other[error].get(name, 0.0)) for name, v in values.items()), default=0.0)
-        out[error] = off / scale if scale > 0 else 0.0
+    levels = relative_errors(mine, other, coarsest)
+    out = dict(embedded)
+    folded = 0.0 if scene.folding is None else scene.folding.bound
+    steps = {name: embedded[name] for name in WHOLE if name in embedded}
+    prescribed = {} if scene.wear.step == "jump" else steps
+    for name, error in levels.items():
+        out[name] = error + folded + prescribed.get(name, 0.0)
+    both = "mesh" if prescribed else "mesh and wear steps"
+    out |= {f"{name[:-4]} by {both} [-]": error for name, error in levels.items()}
+    out |= {f"{name[:-4]} by the wear steps alone [-]": error for name, error in steps.items()}
+    if scene.folding is not None:
+        out["stress by arms folded away [-]"] = folded
     return out
 
 
 def run_stated(
-    scene: Scene, *, out: Path | str, resume: bool = False, progress: bool = False, throw: bool = True
+    scene: Scene,
+    *,
+    out: Path | str,
+    resume: bool = False,
+    progress: bool = False,
+    throw: bool = True,
+    figures: bool = True,
+    told: Callable[[dict[str, Any]], None] | None = None,
 ) -> Result:
-    """Run a scene and its companion, side by side in two processes; ``summary["error estimates"]`` is from both.
+    """Run a scene and, beside it in a second process, its companions; ``summary["error estimates"]`` is from all.
 
-    Parameters and errors as ``run``. A companion that gives up loses nothing: the summary then warns that the error of
-    the mesh is not known.
+    Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Companions that
+    give up lose nothing: without the coarsest, errors are taken as of first order; without both, those of the mesh are
+    not known. The summary then warns.
     """
-    companion = _Companion(coarser(scene), Path(out) / FILE)
-    with companion:
+    companions = _Companions(scene, Path(out))
+
+    def state(recorder: Recorder, summary: dict[str, Any]) -> None:
+        companions.state(recorder, summary)
+        if told is not None:
+            told(summary)
+
+    with companions:
         return run_scene(
             scene,
             out=out,
             resume=resume,
             progress=progress,
             throw=throw,
-            on_step=companion.begin,
-            errors=companion.state,
+            figures=figures,
+            on_step=companions.begin,
+            errors=state,
         )
 
 
-class _Companion:
-    """A run in a process of its own, which leaves its readings in a file; an earlier one's are taken from there."""
+class _Companions:
+    """Runs in a process of their own, the cheaper first, each of which leaves its readings in a file.
 
-    def __init__(self, scene: Scene, file: Path) -> None:
-        self.scene, self.file, self.process = scene, file, None
-        self.begun = False
+    Those of an earlier process are taken from there.
+    """
 
-    def __enter__(self) -> _Companion:
+    def __init__(self, scene: Scene, folder: Path) -> None:
+        self.scene, self.process, self.begun = scene, None, False
+        self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((2, COARSEST), (1, FILE))]
+
+    def __enter__(self) -> _Companions:
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -110,49 +183,63 @@ class _Companion:
             self.process.join()
 
     def begin(self, _: Any = None) -> None:
-        """Start it, once, unless its readings are there."""
+        """Start them, once, unless all has been left."""
         if self.begun:
             return
         self.begun = True
-        if self._left() is None:
+        if left_by(*self.runs[-1]) is None:
             with one_thread():
-                self.process = get_context("spawn").Process(target=_leave, args=(self.scene, self.file), daemon=True)
+                self.process = get_context("spawn").Process(target=_leave, args=(self.runs,), daemon=True)
                 self.process.start()
 
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
-        """Wait for it, and put the estimates into the summary of the run."""
+        """Wait for them, and put the estimates into the summary of the run."""
         self.begin()
         if self.process is not None:
             self.process.join()
-        left = self._left()
-        if left is None or "gave up" in left:
-            why = "ended without a word" if left is None else f"gave up: {left['gave up']}"
-            summary["warnings"].append(f"the coarser companion run {why}; the error of the mesh is not known")
+        coarsest, other = (left_by(*run) or {"gave up": "it ended without a word"} for run in self.runs)
+        if "gave up" in other:
+            why = f"the coarser companion run gave up: {other['gave up']}"
+            summary["warnings"].append(f"{why}; the error of the mesh is not known")
             return
-        stepping = summary["error estimates"]
-        embedded = {f"{name[:-4]} by the wear steps alone [-]": stepping[name] for name in WHOLE.values()}
-        found = estimates(reading(summary, recorder.rows), left["reading"])
-        summary["error estimates"] = stepping | embedded | found
-        summary |= left["cost"]
-
-    def _left(self) -> dict[str, Any] | None:
-        try:
-            left = json.loads(self.file.read_text())
-        except (OSError, ValueError):
-            return None
-        return left if left.get("scene") == fingerprint(self.scene) else None
+        if "gave up" in coarsest:
+            why = f"the coarsest companion run gave up: {coarsest['gave up']}"
+            summary["warnings"].append(f"{why}; the error of the mesh is taken as of first order")
+        embedded, mine = summary["error estimates"], reading(recorder.rows)
+        summary["error estimates"] = stated(self.scene, embedded, mine, other["reading"], coarsest.get("reading"))
+        for left, name in ((other, "companion"), (coarsest, "coarsest companion")):
+            for cost, unit in COSTS:
+                if cost in left:
+                    summary[f"{cost} of the {name}{unit}"] = left[cost]
 
 
-def _leave(scene: Scene, file: Path) -> None:
-    """Run a scene, its readings or its failure into a file, written whole."""
-    end_with_parent()
-    left: dict[str, Any] = {"scene": fingerprint(scene)}
+def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
+    """What a companion has left in its file; None if it has not, or another scene's has."""
     try:
-        result = run_scene(scene, figures=False)
-        left["reading"] = reading(result.summary, result.recorder.rows)
-        left["cost"] = {f"{name} of the companion{unit}": result.summary[name + unit] for name, unit in COSTS}
-    except NgwearError as error:
-        left["gave up"] = str(error)
+        left = json.loads(file.read_text())
+    except (OSError, ValueError):
+        return None
+    return left if left.get("scene") == fingerprint(scene) else None
+
+
+def _leave(runs: list[tuple[Scene, Path]]) -> None:
+    """Run scenes, their readings or failures into their files, each written whole, unless they are there."""
+    end_with_parent()
+    for scene, file in runs:
+        if left_by(scene, file) is not None:
+            continue
+        left: dict[str, Any] = {}
+        try:
+            result = run_scene(scene, figures=False)
+            left |= {"reading": reading(result.recorder.rows)}
+            left |= {cost: result.summary[cost + unit] for cost, unit in COSTS}
+        except NgwearError as error:
+            left["gave up"] = str(error)
+        leave(scene, file, left)
+
+
+def leave(scene: Scene, file: Path, left: dict[str, Any]) -> None:
+    """Write what a companion's run has read off and taken into its file, as a whole."""
     begun = file.with_name(f".{file.name}.{os.getpid()}")
-    begun.write_text(json.dumps(left, indent=2))
+    begun.write_text(json.dumps({"scene": fingerprint(scene)} | left, indent=2))
     begun.replace(file)

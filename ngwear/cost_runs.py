@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-import resource
 import signal
 import time
 from collections.abc import Callable
@@ -15,7 +14,7 @@ from typing import Any
 
 from ngwear.costs.ladder import STOPPED, Measurement
 from ngwear.errors import NgwearError
-from ngwear.files import COMPLETED, GAVE_UP
+from ngwear.files import COMPLETED, GAVE_UP, peak_memory
 from ngwear.scene import Scene
 from ngwear.sliding.scene import PinScene
 
@@ -85,7 +84,7 @@ def measure(point: Point) -> Measurement:
         found = Measurement(status=GAVE_UP, message=str(error))
     except Exception as error:  # a mesher or a solver outside of ngwear: kept as well, or each call would try again
         found = Measurement(status=GAVE_UP, message=f"{type(error).__name__}: {error}")
-    memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    memory = peak_memory()
     return replace(found, cpu=time.process_time(), wall=time.time() - sent, memory=memory)
 
 

@@ -201,14 +201,15 @@ def follow(state: State, outline: Contour, points: Array) -> None:
         If nothing is left, or the section is cut in two.
     """
     body, sieve = state.stage.body, state.stage.scene.deactivation.distortion
-    cells = body.cells.moved(points)
-    worn = cells.area
+    cells = moved = body.cells.moved(points)
+    worn = moved.area
     went = dict(zip(cells.rim.tolist(), np.linalg.norm(points - outline.points, axis=1), strict=True))
     while len(reached := _reached(cells, went)):
         cells = cells.merged(reached)
-    if len(cells.rim) < len(body.cells.rim):
-        state.ledger.lost[Fate.WORN] += worn - cells.area  # by walls whose ends were merged
-    if sieve is not None and (distorted := sieve.finds(cells)).any():
+    if cells is not moved:
+        state.ledger.lost[Fate.WORN] += worn - cells.area  # by walls, of pits or holes, whose ends were merged
+    distorted = np.zeros(len(cells.fate), dtype=bool) if sieve is None else sieve.finds(cells)
+    if distorted.any() or cells is not moved:  # merged points may lie at a hole: what is left there hangs on one point
         cells = booked(state, cells, distorted, Fate.DISTORTED)
     if np.array_equal(cells.corners, body.cells.corners) and np.array_equal(cells.fate, body.cells.fate):
         body.move_to(replace(outline, points=points))

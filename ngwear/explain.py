@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ngwear.absent import Assumed
+from ngwear.choosing import chosen, laid_out
 from ngwear.drift import friction_range
 from ngwear.laws import Constant
 from ngwear.scene import ContactSpec, Scene
@@ -45,11 +46,14 @@ def explain(
     from ngwear.mounting import unworn_body
     from ngwear.stage import Stage
 
-    assumed = assumed or Assumed()
+    assumed, across = assumed or Assumed(), scene.accuracy.across
+    scene = laid_out(scene)
     stage = Stage(scene, unworn_body(scene))
     problem, material = stage.problem, scene.material
     brought = costs(problem, _owners(scene, problem.names))
     pressing = press(scene, stage, on_mount=on_mount)
+    if across is not None and pressing.states:
+        scene = chosen(stage, list(pressing.states), across)
     absent = left_out(scene, pressing, remembers=stage.remembers, assumed=assumed)
     present = _present(scene)
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
@@ -67,6 +71,7 @@ def explain(
         "memory [MB]": {name: brought.memory.get(name, 0.0) for name in present} | _kept(scene, stage, pressing),
         "solver": solver_in_words(problem, _unsymmetric(scene)),
         "numbers": {
+            "element edge in the contact [mm]": scene.accuracy.patch,
             "K/G [-]": material.bulk_modulus / material.shear_modulus,
             "highest sealed pressure / G [-]": max(s.pressure for s in scene.program.cycle) / material.shear_modulus,
             "longest stroke / critical explicit wear distance [-]": max(s.travel for s in scene.program.cycle)

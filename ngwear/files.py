@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 import os
+import resource
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -82,6 +83,16 @@ class OutFolder:
         for left in self.path.glob(".*.*"):
             if left.name.startswith(tuple(f".{name}." for name in (SERIES, FIELDS, SUMMARY, CHECKPOINT))):
                 left.unlink(missing_ok=True)
+
+
+def peak_memory() -> float:
+    """Peak resident memory of this process [MB]; on Linux its own, without what the one before it has left."""
+    status = Path("/proc/self/status")
+    if status.exists():
+        own = [line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmHWM:")]
+        if own:
+            return int(own[0]) / 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def put_series(h5: Any, rows: list[dict[str, Any]]) -> None:

@@ -3,22 +3,38 @@
 from __future__ import annotations
 
 import logging
+import warnings
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.body import Body
-from ngwear.geometry.sizing import smoothed
-from ngwear.refinement import mounting_field
+from ngwear.refinement import mounting_field, unworn_outline
 from ngwear.scene import Scene
 from ngwear.stage import Stage
 from ngwear.state import State
+from ngwear.wear.archard import critical_distance
 
 if TYPE_CHECKING:
     from ngwear.geometry.element_body import ElementBody
 
 log = logging.getLogger(__name__)
+
+
+def warn_if_unstable(scene: Scene) -> None:
+    """Warn, where the caller was called, of explicit steps that grow ripples of the pressure."""
+    wear, cycle = scene.wear, scene.program.cycle
+    rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
+    critical = critical_distance(scene.accuracy.patch, rate, scene.material.plane_strain_modulus)
+    longest = max(s.travel for s in cycle)
+    if wear.scheme == "explicit" and longest > critical:
+        warnings.warn(
+            f"explicit wear over {longest:.4g} mm a step is unstable: the pressure will show the mesh beyond "
+            f"{critical:.4g} mm; use scheme = 'implicit', or shorter strokes",
+            RuntimeWarning,
+            stacklevel=3,
+        )
 
 
 def unworn_body(scene: Scene) -> Body | ElementBody:
@@ -27,7 +43,7 @@ def unworn_body(scene: Scene) -> Body | ElementBody:
         from ngwear import deactivation
 
         return deactivation.element_body(scene)
-    return Body(smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch), mounting_field(scene))
+    return Body(unworn_outline(scene), mounting_field(scene))
 
 
 def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.choosing import chosen
 from ngwear.equilibrium.carry import carry
 from ngwear.errors import MeshError
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.recession import tidied
-from ngwear.refinement import outgrown, wanted_size
+from ngwear.refinement import outgrown, unworn_outline, wanted_size
 from ngwear.stage import Stage
 from ngwear.state import State
 
@@ -48,16 +49,20 @@ def remesh(state: State, contour: Contour | None = None) -> None:
     The carried vectors are first guesses, not equilibria. Raises MeshError if the mesh fails its gates; the
     state is then as it was.
     """
-    old = state.stage
+    old, phases = state.stage, [p.vector for p in state.phases]
     contour = old.body.contour if contour is None else contour
-    wanted = wanted_size(old, [p.vector for p in state.phases], sliding=still_to_slide(state))
+    if state.across is not None:
+        old.scene = chosen(old, phases, state.across)
+        if state.ledger.worn == 0:
+            contour = unworn_outline(old.scene)
+    wanted = wanted_size(old, phases, sliding=still_to_slide(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
     stage = Stage(old.scene, body, state.background)
-    adopt(state, stage, carry(old.problem, [p.vector for p in state.phases], stage.problem))
+    adopt(state, stage, carry(old.problem, phases, stage.problem))
     state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
     state.ledger.remeshes += 1
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import json
 import pickle
-import resource
 from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import IO, Any
@@ -15,9 +14,10 @@ from numpy.typing import NDArray
 
 from ngwear import __version__
 from ngwear.errors import ResultError
-from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, put_series
+from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.contour import Contour
+from ngwear.geometry.sizing import divided
 from ngwear.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
 
@@ -32,6 +32,7 @@ def fingerprint(scene: Scene) -> str:
     return hashlib.sha256(b"".join(content)).hexdigest()
 
 
+POINTS_ALONG = 200  # on a straight worn edge as long as the section: where depth is measured
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
 BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
 
@@ -41,6 +42,12 @@ def depths(before: Contour, after: Contour) -> Array:
     from shapely import LinearRing, distance, points
 
     return np.asarray(distance(points(before.points), LinearRing(after.points)))
+
+
+def measured_at(scene: Scene) -> Contour:
+    """The scene's outline with points all along its straight worn edges: a depth is known where there is one."""
+    longest = float(np.ptp(scene.contour.points, axis=0).max()) / POINTS_ALONG
+    return divided(scene.contour, scene.worn_edges, longest)
 
 
 @dataclass
@@ -73,7 +80,8 @@ class Recorder:
     def add(self, state: Any, *, wall: float) -> None:
         """Add the strokes of the state's last step."""
         if self.unworn is None:
-            self.unworn = self.scene.contour if state.cells is None else state.contour
+            plain = state.cells is None
+            self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
         for number, report in enumerate(state.reports):
             self.rows.append(self._row(state, report, wall))
@@ -166,7 +174,7 @@ class Recorder:
         """The run in a few numbers."""
         scene = self.scene
         cycle = [s.name for s in scene.program.cycle]
-        unworn = self.unworn or scene.contour
+        unworn = self.unworn or measured_at(scene)
         depth = depths(unworn, state.contour)
         ledger = state.ledger
         out: dict[str, Any] = {
@@ -207,10 +215,11 @@ class Recorder:
                 "area in a remesh [-]": ledger.remesh_jump,
             },
             "elements": state.stage.body.mesh.ne,
+            "element edge in the contact [mm]": round(state.stage.scene.accuracy.patch, 6),
             "unknowns": state.stage.problem.space.ndof,
             "wall time [s]": round(self.wall, 3),
             "CPU time [s]": round(self.cpu, 3),
-            "peak memory [MB]": round(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024, 1),
+            "peak memory [MB]": round(peak_memory(), 1),
             "units": UNITS,
             "ngwear": __version__,
         }

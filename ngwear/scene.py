@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
+from ngwear.accuracy import Accuracy
 from ngwear.contradictions import refuse_in_contact, refuse_in_scene
 from ngwear.errors import require
 from ngwear.geometry.contour import Contour
@@ -106,53 +107,6 @@ class SupportSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Accuracy:
-    """Knobs that trade time for error.
-
-    Parameters
-    ----------
-    patch : float
-        Element edge in the followed contacts [mm].
-    coarse : float
-        Element edge far away [mm].
-    mounting : float
-        Element edge at the followed edges' finest while the part is mounted [mm]; the mesh is refined after.
-    grading : float
-        Growth of the element edge with the distance from the patch [-].
-    order : int
-        Polynomial order of the displacement.
-    stress_error : float
-        Error indicator of the stresses over the energy norm, up to which elements outside the contacts stay
-        coarse [-].
-    wear_error : float
-        Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side.
-    folding_error : float
-        Largest relative error of stress that arms of the memory may cause by being folded away [-].
-    """
-
-    patch: float = 0.01
-    coarse: float = 0.2
-    mounting: float = 0.03
-    grading: float = 0.25
-    order: int = 2
-    stress_error: float = 0.05
-    wear_error: float = 0.02
-    folding_error: float = 1e-3
-
-    def __post_init__(self) -> None:
-        require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
-        require(self.coarse >= self.patch, "accuracy.coarse", self.coarse, "must be at least the patch size")
-        require(self.mounting >= self.patch, "accuracy.mounting", self.mounting, "must be at least the patch size")
-        require(0 < self.grading <= 1, "accuracy.grading", self.grading, "must lie between 0 and 1")
-        require(self.order in (2,), "accuracy.order", self.order, "must be 2")
-        require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
-        require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
-        require(
-            0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
-        )
-
-
-@dataclass(frozen=True, kw_only=True)
 class Wear:
     """How the worn depth is integrated, and what becomes of the mesh.
 
@@ -164,7 +118,8 @@ class Wear:
     scheme : str
         ``"implicit"`` (backward Euler inside the contact law, stable for every step) or ``"explicit"``.
     step : str
-        ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"each"``: every stroke.
+        ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"fixed"``: always ``max_jump``;
+        ``"each"``: every stroke.
     max_jump : int
         Most cycles at once.
     remesh : str
@@ -179,7 +134,7 @@ class Wear:
 
     def __post_init__(self) -> None:
         require(self.scheme in ("implicit", "explicit"), "wear.scheme", self.scheme, "must be 'implicit' or 'explicit'")
-        require(self.step in ("jump", "each"), "wear.step", self.step, "must be 'jump' or 'each'")
+        require(self.step in ("jump", "fixed", "each"), "wear.step", self.step, "must be 'jump', 'fixed' or 'each'")
         require(self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
         require(
             self.remesh in ("due", "limit", "never"), "wear.remesh", self.remesh, "must be 'due', 'limit' or 'never'"

@@ -83,11 +83,19 @@ def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
         fluid=record(FluidSpec, "fluid", data["fluid"]) if "fluid" in data else None,
         supports=tuple(record(SupportSpec, f"support[{i}]", t) for i, t in enumerate(tables(data, "support"))),
         program=_program(subtable(data, "program")),
-        accuracy=record(Accuracy, "accuracy", data.get("accuracy", {})),
+        accuracy=_accuracy(data.get("accuracy", {})),
         wear=record(Wear, "wear", data.get("wear", {})),
         deactivation=read_deactivation(data["deactivation"]) if "deactivation" in data else None,
         save=record(Save, "save", data.get("save", {})),
     )
+
+
+def _accuracy(table: Any) -> Accuracy:
+    """Knobs one by one, or all of them by the name of a preset."""
+    if not isinstance(table, dict) or "preset" not in table:
+        return record(Accuracy, "accuracy", table)
+    known("accuracy.", table, {"preset"})
+    return Accuracy.preset(typed("accuracy.preset", table["preset"], "str"))
 
 
 def _contact(number: int, table: dict[str, Any], folder: Path) -> ContactSpec:

@@ -53,6 +53,7 @@ class Stage:
                 spec.edges,
                 spec.surface,
                 modulus=modulus,
+                order=scene.accuracy.order,
                 force_controlled=spec.force is not None,
                 wears=spec.wears,
                 counter=WornProfile.of(spec.surface, scene.accuracy.patch) if spec.counter_wear_rate > 0 else None,

@@ -113,6 +113,7 @@ class State:
     reports: list[StrokeReport] = field(default_factory=list)
     fatigue: Array | None = None
     strained: Array | None = None
+    across: float | None = None
 
     @property
     def background(self) -> Background | None:

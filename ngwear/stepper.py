@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 import math
-import warnings
 from collections.abc import Callable
 from copy import copy
 from dataclasses import replace
@@ -14,19 +13,19 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.choosing import chosen, laid_out
 from ngwear.drift import steady_cycles
 from ngwear.equilibrium.carry import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
-from ngwear.errors import ConvergenceError, GeometryError, MeshError
+from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
 from ngwear.geometry.body import Body
-from ngwear.mounting import mount, refuse_idle_contacts, unworn_body
+from ngwear.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.program import Stroke
 from ngwear.refinement import outgrown, wanted_size
 from ngwear.remesh import is_due, remesh, still_to_slide
 from ngwear.scene import Scene
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
-from ngwear.wear.archard import critical_distance
 from ngwear.wear.control import JumpControl
 from ngwear.wear.cycles import Plan
 from ngwear.wear.strokes import Strokes
@@ -35,6 +34,7 @@ from ngwear.wearing import Wearing
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+FIRST = 0.01  # of the program's cycles: the first step
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
 
@@ -47,30 +47,24 @@ class Stepper:
     scene : Scene
     on_mount : callable or None
         Called with the fraction of the mounting that is done.
+
+    Raises
+    ------
+    SceneError
+        If the scene asks for an error: no single run meets one.
     """
 
     def __init__(self, scene: Scene, *, on_mount: Callable[[float], None] | None = None) -> None:
-        self.scene = scene
+        error = scene.accuracy.error
+        require(error is None, "accuracy.error", error, "is met by several runs: use ngwear.adaptive.run_to_error")
+        self.scene, self._across = laid_out(scene), scene.accuracy.across
         self.on_mount = on_mount or (lambda fraction: None)
         self._losses: ModuleType | None = None
         if scene.deactivation is not None:
             from ngwear import deactivation
 
             self._losses = deactivation
-        self._warn_if_unstable()
-
-    def _warn_if_unstable(self) -> None:
-        wear, cycle = self.scene.wear, self.scene.program.cycle
-        rate = max((c.wear_rate.highest for c in self.scene.contacts), default=0.0)
-        critical = critical_distance(self.scene.accuracy.patch, rate, self.scene.material.plane_strain_modulus)
-        longest = max(s.travel for s in cycle)
-        if wear.scheme == "explicit" and longest > critical:
-            warnings.warn(
-                f"explicit wear over {longest:.4g} mm a step is unstable: the pressure will show the mesh beyond "
-                f"{critical:.4g} mm; use scheme = 'implicit', or shorter strokes",
-                RuntimeWarning,
-                stacklevel=3,
-            )
+        warn_if_unstable(self.scene)
 
     def start(self) -> State:
         """Mount the part on a coarse mesh, solve each stroke of the cycle once, and refine to the contact.
@@ -84,8 +78,11 @@ class Stepper:
         """
         scene = self.scene
         stage = Stage(scene, unworn_body(scene))
-        control = JumpControl(scene.accuracy.wear_error, longest=scene.wear.max_jump)
-        state = State(stage, [], control)
+        cycles = scene.program.strokes / len(scene.program.cycle)
+        first = 1 if scene.deactivation is not None else max(1, round(FIRST * cycles))  # what is pulled too hard tears
+        longest = min(scene.wear.max_jump, max(1, math.ceil(scene.accuracy.longest_jump * cycles)))
+        control = JumpControl(scene.accuracy.wear_error, cycles=min(first, longest), longest=longest)
+        state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         problem = stage.problem
         phases = len(scene.program.cycle)
@@ -110,18 +107,27 @@ class Stepper:
     def _refine(self, state: State) -> None:
         """Mesh anew until the mesh is fine where the strokes of the cycle want it."""
         ahead = still_to_slide(state)
-        while outgrown(state.stage, [p.vector for p in state.phases], sliding=ahead) and state.ledger.remeshes < 4:
+        while state.ledger.remeshes < 4:
+            vectors, laid = [phase.vector for phase in state.phases], state.stage.scene
+            first = state.across is not None and state.ledger.remeshes == 0  # the mounting's mesh may be too fine, too
+            if state.across is not None:
+                state.stage.scene = chosen(state.stage, vectors, state.across)
+            if not first and not outgrown(state.stage, vectors, sliding=ahead):
+                state.stage.scene = laid
+                break
             remesh(state)
             self._settle_cycle(state, far=state.ledger.remeshes == 1)
             self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
+        state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
     def _settle_cycle(self, state: State, *, far: bool = False) -> None:
         """Solve each stroke of the cycle once, on the outline as it is."""
         state.reports = []
         for i, stroke in enumerate(self.scene.program.cycle):
             sliding = self._strokes(i, 0)
-            Wearing.begin(state, i, sliding)
+            wearing = Wearing.begin(state, i, sliding)
             iterations = self._solve_phase(state, i, stroke, sliding, far=far)
+            wearing.look()
             state.reports.append(self._observe(state, i, iterations, sliding))
 
     def _remember(self, state: State) -> None:
@@ -163,7 +169,8 @@ class Stepper:
         while True:
             goal = min([m for m in self.scene.save.strokes if m > state.strokes] + [program.strokes])
             left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
-            cycles = 1 if self.scene.wear.step == "each" else min(state.control.cycles, left)
+            wear = self.scene.wear
+            cycles = {"each": 1, "fixed": min(wear.max_jump, left), "jump": state.control.share(left)}[wear.step]
             cycles = steady_cycles(self.scene, state.strokes, cycles)
             saved = self._save(state)
             try:

@@ -5,14 +5,17 @@ from __future__ import annotations
 import logging
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.remesh import remesh
+from ngwear.scene import ContactSpec
 from ngwear.state import State
 from ngwear.wear.archard import at_points, worn_share
 from ngwear.wear.backward import share_of_last
@@ -121,6 +124,29 @@ class Wearing:
         moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
         self.ahead = area * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
 
+    def look(self) -> None:
+        """Note what the present pressures would wear, so that the first step's error is known; takes nothing.
+
+        Nothing where friction may stick: what slips is not known yet.
+        """
+        scene, phase = self.state.stage.scene, self.state.phases[self.index]
+        if self.state.stage.remembers:
+            return
+        width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last)
+        phase.pressure, phase.mean, phase.ways = none.copy(), none, np.zeros(len(none))
+        for k, spec in enumerate(scene.contacts):
+            if spec.wears:
+                phase.pressure[k] = width * at_points(self.outline, *self._rate(spec, {}))
+
+    def _rate(self, spec: ContactSpec, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
+        """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-]."""
+        stage = self.state.stage
+        contact = stage.contacts[spec.name]
+        profile = contact.profile()
+        rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
+        rate *= contact.wear_factor(profile.pressure)
+        return profile, rate / contact.at_nodes(stage.elasticity.volume_ratio())
+
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.
 
@@ -152,10 +178,7 @@ class Wearing:
             if not spec.wears or ways[k] == 0:
                 continue
             contact = stage.contacts[spec.name]
-            profile = contact.profile()
-            rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
-            rate *= contact.wear_factor(profile.pressure)
-            rate /= contact.at_nodes(stage.elasticity.volume_ratio())
+            profile, rate = self._rate(spec, shares)
             last = contact.from_points(self.last[k] / width) * profile.weight
             last *= self.last[k].sum() / last.sum() if last.any() else 1.0
             area = worn_share(halfway, profile, self.own[k] * ways[k] * rate * profile.weight + last)

@@ -178,7 +178,9 @@ def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
         return [Choice(target, None) for target in TARGETS]
     if study.seconds(study.finest, wall=True) <= TOGETHER * (budget - study.spent):
         _run(study, study.finest, budget, measure)
-    return [_confirmed(study, target, budget, measure) for target in TARGETS]
+    choices = [_confirmed(study, target, budget, measure) for target in TARGETS]
+    # A run for another target may have come out cheaper.
+    return [_cheapest_run(study, c.target, c.setting) if c.measured else c for c in choices]
 
 
 def _confirmed(study: Study, target: float, budget: float, measure: Measure) -> Choice:
@@ -196,14 +198,14 @@ def _confirmed(study: Study, target: float, budget: float, measure: Measure) -> 
             return Choice(target, None)
         if setting not in study.runs:
             if study.seconds(setting, wall=True) > budget - study.spent:
-                return _fall_back(study, target, setting)
+                return _cheapest_run(study, target, setting)
             _run(study, setting, budget, measure)
         if study.runs[setting].ok and study.error(setting, study.main) <= target:
             return Choice(target, setting, measured=True)
         unfit.add(setting)
 
 
-def _fall_back(study: Study, target: float, predicted: Setting) -> Choice:
-    """A run that reaches the target if there is one, else the setting that should."""
+def _cheapest_run(study: Study, target: float, predicted: Setting) -> Choice:
+    """The cheapest run that reaches the target if there is one, else the setting that should."""
     fit = [s for s in study.front() if study.error(s, study.main) <= target]
     return Choice(target, fit[0], measured=True) if fit else Choice(target, predicted)

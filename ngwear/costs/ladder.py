@@ -34,6 +34,8 @@ class Ladder:
         Solves that a value of 0 takes; 0 if it changes nothing about their number.
     smooth : bool
         Whether an error that falls by a power of the value can be expected.
+    remaining : float
+        What the finest run errs by over its difference from the one before, where no order shows.
     """
 
     name: str
@@ -44,6 +46,7 @@ class Ladder:
     growth: float
     most_solves: int = 0
     smooth: bool = True
+    remaining: float = 1.0
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -73,7 +73,7 @@ class Study:
         """Estimated relative error of a ladder's finest run; infinite with fewer than two."""
         values, results = self._series(k, quantity)
         found = reference_error(values, results, smooth=self.ladders[k].smooth) if values else None
-        return math.inf if found is None else found
+        return math.inf if found is None else self.ladders[k].remaining * found
 
     def rung_error(self, k: int, rung: int, quantity: str) -> float | None:
         """Relative difference from the ladder's finest run; None if the rung has not been run."""

@@ -17,6 +17,7 @@ from ngwear.geometry.body import Body
 from ngwear.surfaces import RigidSurface, WornProfile
 
 Array = NDArray[np.float64]
+ENDS = ng.IntegrationRule([(0.0,), (1.0,)], [0.5, 0.5])
 
 
 class Contact(UnilateralContact):
@@ -24,6 +25,11 @@ class Contact(UnilateralContact):
 
     A surface that slides (``slides=True``) also moves across its approach, turned by +90 degrees, by the load
     ``"NAME slide [mm]"``; all else as in ``UnilateralContact``.
+
+    With displacements of order 1 (``order``) it is continuous: discontinuous, it would have two unknowns a mesh edge
+    where the outline has but one displacement a node. The law then holds at the nodes, each for itself: weighed along
+    the edges, it leaves open nodes pressures of either sign that die out but never vanish. With order 3 it is linear as
+    with order 2: at the contact's edge it falls as a square root, and no higher polynomial comes nearer to that.
 
     With ``wears`` a depth ``worn`` may be set that is lost in the same step whatever the pressure.
 
@@ -44,8 +50,10 @@ class Contact(UnilateralContact):
         counter: WornProfile | None = None,
         wears: bool = False,
         modulus: float,
+        order: int = 2,
     ) -> None:
         super().__init__(name, edges, surface, force_controlled=force_controlled, modulus=modulus)
+        self.order = order
         self.counter, self.turned, self.wears = counter, 0.0, wears
         self.slid: ng.Parameter | None = None
         if slides:
@@ -59,7 +67,11 @@ class Contact(UnilateralContact):
         return x - self.slid * ay, y + self.slid * ax
 
     def pressure_space(self, body: Body) -> ng.FESpace:
-        return ng.Compress(ng.SurfaceL2(body.mesh, order=1, definedon=body.boundary(self.edges)))
+        space = ng.H1 if self.order == 1 else ng.SurfaceL2
+        return ng.Compress(space(body.mesh, order=1, definedon=body.boundary(self.edges)))
+
+    def measure(self) -> Any:
+        return ng.ds(definedon=self._region, intrules={ng.SEGM: ENDS}) if self.order == 1 else super().measure()
 
     def gap(self, fields: dict[str, Any]) -> Any:
         gap = super().gap(fields)
@@ -86,8 +98,7 @@ class Contact(UnilateralContact):
         """Mapped points at both ends and in the middle of each mesh edge in contact, in the order of the outline."""
         line = body.outline
         self.positions = line.on(self.edges)
-        rule = ng.IntegrationRule([(0.0,), (1.0,)], [0.5, 0.5])
-        points = body.mesh.MapToAllElements(rule, region)
+        points = body.mesh.MapToAllElements(ENDS, region)
         row = {int(nr): k for k, nr in enumerate(points["nr"][::2])}
         rows = np.array([row[int(nr)] for nr in line.element[self.positions]])
         points = points.reshape(-1, 2)[rows]
@@ -113,6 +124,7 @@ class Contact(UnilateralContact):
             stretch=self._sample(stretch),
             place=np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1),
             gap=self._sample(self.gap(self._state)),
+            nodal=self.order == 1,
         )
 
     def peak(self) -> float:
@@ -161,16 +173,12 @@ class Contact(UnilateralContact):
     @cached_property
     def _end_shapes(self) -> tuple[NDArray[np.intp], Array]:
         """Pressure unknowns of each mesh edge, shape (m, 2), and their shape functions at its ends, (m, 2, 2)."""
-        field = ng.GridFunction(self._state[self.pressure_name].space)
-        vector = field.vec.FV().NumPy()
-        elements = self._body.outline.element[self.positions]
-        dofs = np.array([field.space.GetDofNrs(ng.ElementId(ng.BND, int(nr))) for nr in elements])
-        shapes = []
-        for k in range(2):
-            vector[:] = 0.0
-            vector[dofs[:, k]] = 1.0
-            shapes.append(self._sample(field))
-        return dofs, np.stack(shapes, axis=-1)
+        space = self._state[self.pressure_name].space
+        elements = [ng.ElementId(ng.BND, int(nr)) for nr in self._body.outline.element[self.positions]]
+        dofs = np.array([space.GetDofNrs(element) for element in elements])
+        ends = self._points["x"].reshape(-1, 2)  # on the reference element
+        shapes = [[space.GetFE(e).CalcShape(x) for x in pair] for e, pair in zip(elements, ends, strict=True)]
+        return dofs, np.array(shapes)
 
     def set_worn(self, depth: Array) -> None:
         """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P."""

@@ -74,18 +74,33 @@ class ContactProfile:
 
     @classmethod
     def from_samples(
-        cls, body: Body, positions: NDArray[np.intp], *, pressure: Array, stretch: Array, place: Array, gap: Array
+        cls,
+        body: Body,
+        positions: NDArray[np.intp],
+        *,
+        pressure: Array,
+        stretch: Array,
+        place: Array,
+        gap: Array,
+        nodal: bool = False,
     ) -> ContactProfile:
-        """Build from samples at both ends of each mesh edge; ``place`` of shape (m, 2, 2), the others (m, 2)."""
+        """Build from samples at both ends of each mesh edge; ``place`` of shape (m, 2, 2), the others (m, 2).
+
+        A pressure that is ``nodal`` already stays as it is; smeared, the contact would be an edge wider.
+        """
         t, node = nodes(body, positions)
         ends = body.outline.t[positions]
         length = body.contour.arc_lengths(ends[:, 0], ends[:, 1])
         first, second = pressure.T
         share = np.stack([2 * first + second, first + 2 * second], axis=1) * length[:, None] / 6
+        if nodal:
+            share = pressure * length[:, None] / 2
         weight = np.bincount(node.ravel(), np.repeat(length / 2, 2), len(t))
         load = np.bincount(node.ravel(), share.ravel(), len(t))
         load = np.where(load > 1e-9 * load.max(initial=0.0), load, 0.0)
-        nominal = load / weight - _grading_bias(node, length, pressure.mean(axis=1), len(t))
+        nominal = load / weight
+        if not nodal:
+            nominal -= _grading_bias(node, length, pressure.mean(axis=1), len(t))
         nominal = np.maximum(nominal, 0.0)
         nominal[load <= 0] = 0.0
         return cls(

@@ -7,6 +7,7 @@ import ngsolve as ng
 from ngwear.effects.base import VOLUMETRIC_STRESS, Array, Unknowns, VolumeTerm
 from ngwear.effects.invariants import Invariants
 from ngwear.effects.isochoric import isochoric_energy, respond
+from ngwear.fields.displacements import stress_order
 from ngwear.geometry.meshed import Meshed
 from ngwear.materials import Hyperelastic
 
@@ -16,9 +17,10 @@ POINTWISE = 3.0  # Ks / G
 class Elasticity(VolumeTerm):
     """Energy ``psi_iso + Ks/2 (J - 1)^2 + p (J - 1) - p^2 / (2 (K - Ks))`` over the section, Ks = 3 G.
 
-    The unknown p [MPa] carries all but a small part Ks of the volumetric stiffness. With
-    displacements of order 2 and p of order 1 (Taylor-Hood) no locking appears for any K/G (perturbed Lagrangian of
-    Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51 (1985) 177).
+    The unknown p [MPa] carries all but a small part Ks of the volumetric stiffness. With displacements of order 2 or 3
+    and p of one less (Taylor-Hood), or of order 1 with bubbles and p of order 1 (see ``fields.displacements``), no
+    locking appears for any K/G (perturbed Lagrangian of Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51
+    (1985) 177; ``verify locking``).
 
     Ks is there for stability: without it such pairs, volume kept in the mean only, have spurious
     wrinkles of the mesh's wavelength once the pressure exceeds a few G (Auricchio et al., Comput. Methods
@@ -47,7 +49,7 @@ class Elasticity(VolumeTerm):
         return pointwise, bulk - pointwise
 
     def spaces(self, body: Meshed) -> dict[str, ng.FESpace]:
-        return {VOLUMETRIC_STRESS: ng.H1(body.mesh, order=self.order - 1)}
+        return {VOLUMETRIC_STRESS: ng.H1(body.mesh, order=stress_order(self.order))}
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         self._state = unknowns.state

@@ -105,6 +105,10 @@ class UnilateralContact(Term):
     def pressure_space(self, body: Meshed) -> ng.FESpace:
         """Space of the nominal pressure on the named edges."""
 
+    def measure(self) -> Any:
+        """Measure of the edges in which the law of contact is weighed."""
+        return ng.ds(definedon=self._region, bonus_intorder=2)
+
     @abc.abstractmethod
     def lengths(self, body: Meshed) -> ng.GridFunction:
         """Length of each surface element as it was made [mm]; constant on it, so that P adds up to what g asks."""
@@ -175,7 +179,7 @@ class UnilateralContact(Term):
         closure = 1 + c * (1e-6 * give + kappa / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         energy = (active - p * p) / (2 * c) * kinematics.weight
-        form += ng.Variation(energy.Compile() * ng.ds(definedon=self._region, bonus_intorder=2))
+        form += ng.Variation(energy.Compile() * self.measure())
         if self.force_controlled:
             # A constant energy density over the whole surface adds up to - force * travel.
             everywhere = body.mesh.Boundaries(".*")
@@ -195,9 +199,8 @@ class UnilateralContact(Term):
         """Resultant of the contact pressure on the rubber; [N], or N/mm in plane strain."""
         p = self._state[self.pressure_name]
         normal = self.surface.normal(*self.place(self._state))
-        measure = ng.ds(definedon=self._region, bonus_intorder=2)
         weight = self._kinematics.weight
-        return np.array([ng.Integrate(p * n * weight * measure, self._body.mesh) for n in normal])
+        return np.array([ng.Integrate(p * n * weight * self.measure(), self._body.mesh) for n in normal])
 
     def prepare(self) -> None:
         self._start.vec.data = self._state[DISPLACEMENT].vec

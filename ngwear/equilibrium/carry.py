@@ -14,6 +14,7 @@ from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.contact import Contact
 from ngwear.effects.contact_patch import PatchContact
 from ngwear.equilibrium.problem import Problem
+from ngwear.fields.displacements import from_quadratic
 from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
 from ngwear.geometry.harmonic import HarmonicFill
@@ -74,10 +75,12 @@ def carry_solid(old: Problem, new: Problem) -> None:
 
 def _take_inside(search: PointSearch, old: Problem, new: Problem, target: Array) -> None:
     """Displacement and volumetric stress at the nodes of ``new``, into a vector of its unknowns."""
-    body = new.body
-    nodes = search(old.fields[DISPLACEMENT])
-    target[new.part(DISPLACEMENT)] = np.concatenate([nodal.join(values, body.edges) for values in nodes.T])
-    target[new.part(VOLUMETRIC_STRESS)] = search(old.fields[VOLUMETRIC_STRESS])[: body.mesh.nv, 0]
+    body, spaces = new.body, new.fields[DISPLACEMENT].space.components
+    nodes = [nodal.join(values, body.edges) for values in search(old.fields[DISPLACEMENT]).T]
+    parts = [from_quadratic(*pair, body.edges) for pair in zip(nodes, spaces, strict=True)]
+    target[new.part(DISPLACEMENT)] = np.concatenate(parts)
+    stress = nodal.join(search(old.fields[VOLUMETRIC_STRESS])[:, 0], body.edges)
+    target[new.part(VOLUMETRIC_STRESS)] = from_quadratic(stress, new.fields[VOLUMETRIC_STRESS].space, body.edges)
 
 
 def unfold(problem: Problem) -> None:

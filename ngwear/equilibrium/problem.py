@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns, VolumeTerm
 from ngwear.equilibrium.linear import DirectSolver, Tangent
 from ngwear.errors import SceneError
+from ngwear.fields.displacements import displacements
 from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.meshed import Meshed
@@ -74,7 +75,7 @@ class Problem:
         for support in supports:
             body.boundary(support.edges)
         flags = {f"dirichlet{axis}": names for axis, names in held.items() if names}
-        spaces: dict[str, ng.FESpace] = {DISPLACEMENT: ng.VectorH1(body.mesh, order=order, **flags)}
+        spaces: dict[str, ng.FESpace] = {DISPLACEMENT: displacements(body.mesh, order, **flags)}
         for term in self.terms:
             spaces |= term.spaces(body)
         self.names = tuple(spaces)
@@ -85,8 +86,9 @@ class Problem:
         self._volume = [term for term in self.terms if isinstance(term, VolumeTerm)]
         self.points: MaterialPoints | None = None
         if self._volume:
+            on = (spaces[DISPLACEMENT].components[0], spaces[VOLUMETRIC_STRESS])
             places = {"displacement": self.part(DISPLACEMENT), "pressure": self.part(VOLUMETRIC_STRESS)}
-            self.points = MaterialPoints(body, kinematics, order=order, **places)
+            self.points = MaterialPoints(body, kinematics, *on, **places)
         unknowns = Unknowns(
             body=body,
             kinematics=kinematics,

@@ -70,12 +70,11 @@ class Cells:
         self.real = self.weights != 0
         self.quads = (np.array(corners) == 4) & (mesh.dim == 2)
 
-    def shapes(self, order: int) -> tuple[Index, Array, Array]:
-        """Unknowns of each element in an H1 space, and its shape functions and their slopes at the points.
+    def shapes(self, space: ng.FESpace) -> tuple[Index, Array, Array]:
+        """Unknowns of each element in a scalar H1 space, and its shape functions and their slopes at the points.
 
         Shapes (elements, n), (elements, points, n) and (elements, points, n, dim), on the reference element.
         """
-        space = ng.H1(self.mesh, order=order)
         unknowns = _filled([space.GetDofNrs(element) for element in self._elements])
         most = unknowns.shape[1]
         values, slopes = {}, {}

@@ -20,6 +20,7 @@ from ngwear.geometry.meshed import Meshed
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 EXACT = {2: 2.0, 3: 1.0}  # order of the rule over that of the displacement: 4 points suffice in a tetrahedron
+BUBBLES = 2  # what counts as the order of displacements of order 1: their bubbles are to be felt
 
 
 class MaterialPoints:
@@ -36,25 +37,33 @@ class MaterialPoints:
     ----------
     body : Meshed
     kinematics : Kinematics
-    order : int
-        Polynomial order of the displacement; the volumetric stress has one less.
+    moving, stressed : ng.FESpace
+        Of a component of the displacement and of the volumetric stress.
     displacement, pressure : slice
         Where both stand in the vector of unknowns.
     """
 
     def __init__(
-        self, body: Meshed, kinematics: Kinematics, *, order: int, displacement: slice, pressure: slice
+        self,
+        body: Meshed,
+        kinematics: Kinematics,
+        moving: ng.FESpace,
+        stressed: ng.FESpace,
+        *,
+        displacement: slice,
+        pressure: slice,
     ) -> None:
         self.body, self.kinematics = body, kinematics
         dim = self._dim = body.mesh.dim
-        self._cells = Cells(body.mesh, int(EXACT[dim] * order))
+        self._cells = Cells(body.mesh, int(EXACT[dim] * max(moving.globalorder, BUBBLES)))
         self.strains = dim * dim + (dim == 2) + 1
         self._points = self._cells.points
-        moving, self._shapes, self._slopes = self._cells.shapes(order)
-        stressed, self._stress_shapes, _ = self._cells.shapes(order - 1)
+        self._stressed = stressed
+        moves, self._shapes, self._slopes = self._cells.shapes(moving)
+        stresses, self._stress_shapes, _ = self._cells.shapes(stressed)
         component = (displacement.stop - displacement.start) // dim
-        moved = [displacement.start + i * component + moving for i in range(dim)]
-        self.unknowns = np.concatenate([*moved, pressure.start + stressed], axis=1)
+        moved = [displacement.start + i * component + moves for i in range(dim)]
+        self.unknowns = np.concatenate([*moved, pressure.start + stresses], axis=1)
         self._measure()
 
     def follow(self) -> None:
@@ -116,21 +125,24 @@ class MaterialPoints:
         return np.sqrt(np.where(self._cells.quads, 1.0, 4 / np.sqrt(3)) * self._sizes.sum(axis=1))
 
     def recovered(self, values: Array) -> Array:
-        """Values at the points, shape (elements, points, k), smoothed: averaged to the vertices and interpolated."""
-        vertices, shapes, fit = self._corners
-        plane = fit @ values
-        area = self._sizes.sum(axis=1)[:, None] * shapes.any(axis=1)  # of the element, at each of its vertices
-        total = np.zeros((self.body.mesh.nv, values.shape[-1]))
-        weight = np.bincount(vertices.ravel(), area.ravel(), minlength=len(total))
+        """Values at the points, shape (elements, points, k), smoothed: made continuous, as the volumetric stress is.
+
+        Its unknowns are fitted to the values of each element, and averaged between elements.
+        """
+        unknowns, shapes, fit = self._smooth
+        fitted = fit @ values
+        area = self._sizes.sum(axis=1)[:, None] * shapes.any(axis=1)  # of the element, at each of its unknowns
+        total = np.zeros((self._stressed.ndof, values.shape[-1]))
+        weight = np.bincount(unknowns.ravel(), area.ravel(), minlength=len(total))
         for k in range(values.shape[-1]):
-            total[:, k] = np.bincount(vertices.ravel(), (plane[..., k] * area).ravel(), minlength=len(total))
-        return shapes @ (total / weight[:, None])[vertices]
+            total[:, k] = np.bincount(unknowns.ravel(), (fitted[..., k] * area).ravel(), minlength=len(total))
+        return shapes @ (total / weight[:, None])[unknowns]
 
     @cached_property
-    def _corners(self) -> tuple[Index, Array, Array]:
-        """Vertices of the elements, shape functions of order 1, and their least-squares fit to the points."""
-        vertices, shapes, _ = self._cells.shapes(1)
-        return vertices, shapes, np.linalg.pinv(shapes * self._cells.real[..., None])
+    def _smooth(self) -> tuple[Index, Array, Array]:
+        """Unknowns and shape functions of the volumetric stress, and their least-squares fit to the points."""
+        unknowns, shapes, _ = self._cells.shapes(self._stressed)
+        return unknowns, shapes, np.linalg.pinv(shapes * self._cells.real[..., None])
 
     def stiffness(self, tangent: Array) -> Array:
         """Element matrices, shape (elements, n, n), of d stress / d strain, (elements, points, strains, strains)."""

@@ -65,10 +65,20 @@ def smoothed(contour: Contour, edges: tuple[str, ...], longest: float) -> Contou
     After that no curved segment there is longer than ``longest`` [mm]: what wears must not be refined later,
     because a point put on the spline of a curved segment changes the polygon's area.
     """
+    return _halved(contour, edges, longest, curved=True)
+
+
+def divided(contour: Contour, edges: tuple[str, ...], longest: float) -> Contour:
+    """Return the outline with points inserted on the straight segments of the named edges longer than ``longest``."""
+    return _halved(contour, edges, longest, curved=False)
+
+
+def _halved(contour: Contour, edges: tuple[str, ...], longest: float, *, curved: bool) -> Contour:
     while True:
         middle = np.arange(len(contour)) + 0.5
         sagitta = np.linalg.norm(contour.at(middle) - contour.on_polygon(middle), axis=1)
-        split = contour.on(edges) & (contour.lengths > longest) & (sagitta > 1e-6 * contour.lengths)
+        mine = (sagitta > 1e-6 * contour.lengths) == curved
+        split = contour.on(edges) & (contour.lengths > longest) & mine
         if not split.any():
             return contour
         contour = contour.inserted(middle[split])

@@ -106,7 +106,7 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
         x = [rungs[i].cpu for i in others]
         y = [max(study.rung_error(k, i, study.main) or 0.0, LEAST) for i in others]
         order = study.order(k, study.main)
-        told = "" if order is None else f", order {order:.1f}"
+        told = "" if order is None else f", observed order {order:.1f}"
         colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
         reference = f"against {ladder.labels[max(rungs)]}{told}"
         axis.loglog(x, y, marker + "-", color=colour, ms=6, lw=1.0, label=f"{ladder.name}, {reference}")
@@ -120,4 +120,7 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
             )  # fmt: skip
     axis.set_ylabel("relative difference from the ladder's finest run [-]")
     axis.set_title("each knob alone (bold: the scene's value)", fontsize=11)
-    axis.legend(fontsize=8, loc="best")
+    axis.margins(0.13)
+    low, high = axis.get_ylim()
+    axis.set_ylim(low * (low / high) ** 0.25, high)  # room for the legend, which else hides the smallest errors
+    axis.legend(fontsize=8, loc="lower left")

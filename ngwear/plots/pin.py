@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,11 +39,12 @@ class SheetPicture:
 
 @dataclass(frozen=True)
 class PinFile:
-    """What a run has left: columns as in ``series.csv`` in the order of speed, and the sheet at each speed."""
+    """What a run has left: columns as in ``series.csv`` in the order of speed, the sheet at each, stated errors."""
 
     thickness: float
     series: dict[str, Array]
     sheets: list[SheetPicture]
+    errors: dict[str, float]
 
 
 def is_pin_run(folder: Path | str) -> bool:
@@ -81,7 +83,8 @@ def read_pin(folder: Path | str) -> PinFile:
                 )
                 for g in groups
             ]
-            return PinFile(float(h5.attrs["thickness [mm]"]), {k: v[order] for k, v in series.items()}, sheets)
+            errors = json.loads(h5.attrs.get("summary", "{}")).get("error estimates", {})
+            return PinFile(float(h5.attrs["thickness [mm]"]), {k: v[order] for k, v in series.items()}, sheets, errors)
     except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
         raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
 
@@ -110,7 +113,7 @@ def plot_pin(folder: Path | str) -> list[Path]:
 
 
 def friction_figure(result: PinFile) -> Figure:
-    """Friction coefficient against speed and its parts, by force and by energy."""
+    """Friction coefficient against speed, in the band of its stated error, and its parts, by force and by energy."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8, 4.5), layout="constrained")
@@ -123,6 +126,7 @@ def friction_figure(result: PinFile) -> Figure:
         ("heat in the rubber over load and track [-]", "--", INTERNAL, "heat in the rubber"),
     ):
         axis.semilogx(result.series["speed [mm/s]"], result.series[column], style, color=colour, label=label)
+    _band(axis, result, "friction coefficient [-]", "friction coefficient [-]", WHOLE)
     axis.set_ylim(bottom=0)
     axis.set_xlabel("sliding speed [mm/s]")
     axis.set_ylabel("friction coefficient [-]")
@@ -131,8 +135,15 @@ def friction_figure(result: PinFile) -> Figure:
     return figure
 
 
+def _band(axis: Axes, result: PinFile, column: str, error: str, colour: str) -> None:
+    """A relative error about a column; none that a run has not stated."""
+    values, off = result.series[column], result.errors.get(error, 0.0)
+    speeds = result.series["speed [mm/s]"]
+    axis.fill_between(speeds, (1 - off) * values, (1 + off) * values, color=colour, alpha=0.2, lw=0)
+
+
 def contact_figure(result: PinFile) -> Figure:
-    """Penetration and contact area against speed."""
+    """Penetration and contact area against speed, in the bands of their stated errors."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(8, 4.5), layout="constrained")
@@ -141,6 +152,8 @@ def contact_figure(result: PinFile) -> Figure:
     speed, series = result.series["speed [mm/s]"], result.series
     (depth,) = left.semilogx(speed, series["penetration [mm]"], "o-", color=SURFACE)
     (area,) = right.semilogx(speed, series["contact area [mm²]"], "s-", color=INTERNAL)
+    _band(left, result, "penetration [mm]", "maximum depth [-]", SURFACE)
+    _band(right, result, "contact area [mm²]", "contact area [-]", INTERNAL)
     left.set_xlabel("sliding speed [mm/s]")
     left.set_ylabel("penetration [mm]", color=SURFACE)
     right.set_ylabel("contact area [mm²]", color=INTERNAL)

@@ -23,10 +23,16 @@ def quarter_ring(inner: float, outer: float) -> Contour:
     return Contour(np.vstack([outer * arc, inner * arc[::-1]]), names, corners)
 
 
-def meshed(contour: Contour, coarse: float, seeds: Array | None = None, size: Array | float = 0.0) -> Body:
+def meshed(
+    contour: Contour,
+    coarse: float,
+    seeds: Array | None = None,
+    size: Array | float = 0.0,
+    grading: float = SizeField.grading,
+) -> Body:
     """Mesh a contour with elements of ``coarse`` [mm]; at the seeds, shape (k, 2), of ``size`` (one, or one each)."""
     places = np.empty((0, 2)) if seeds is None else np.asarray(seeds, dtype=float)
-    return Body(contour, SizeField(places, np.broadcast_to(size, len(places)).astype(float), coarse))
+    return Body(contour, SizeField(places, np.broadcast_to(size, len(places)).astype(float), coarse, grading))
 
 
 class QuadBlock(Meshed):

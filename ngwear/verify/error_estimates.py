@@ -1,25 +1,51 @@
-"""The errors that runs state of themselves against true ones: the shipped scenes of wear by moved nodes.
+"""The errors that runs state of themselves against true ones: the shipped scenes.
 
-A run states what it differs by from a companion that is twice as coarse (``ngwear.companion``). True is what it
-differs by from a run with elements of half the edge and jumps that may err by half as much; where errors are of first
-order that is half of the whole error, and an exact estimate would have an effectivity of 2. Wanted is 0.5 to 3. Below
-0.1 % neither of them can be told from the chance of where a new mesh falls: both count as at least that.
+A run states what two coarser ones tell of it (``ngwear.companion``); the pin on a plate, what the coarser of its two
+meshes does. True is what it differs by from a run with elements of so many times the edge (``FINER``), and jumps that
+may err by as many times as much, read at the same places and in the same mean square. The finer run errs, too: of an
+error of first order, one with a quarter of everything shows 3/4 and one with a half 1/2, so that an exact estimate
+would have an effectivity of 1.3 and 2; of second order, 1.07 and 1.3. Wanted is 0.5 to 3. Below 0.1 % neither can be
+told from the chance of where a new mesh falls: both count as at least that.
 
-Two miss the band, on the safe side: the shaft's peak pressure and the contact width under starving lubrication, where a
-companion of so few elements across the contact errs by more than a first order would.
+Left out is ``shaft_on_plate/scene_explicit.toml``: its elements are all but the smallest at which its steps are stable,
+and finer ones show the mesh, not the solution.
 
-Takes some minutes.
+The section that loses elements is in ``torn_seal``, which has the run on finer elements.
+
+Four of 24 miss the band, all on the safe side. The shaft's peak pressure (3.5): one four times as coarse has ten
+elements across the contact. The depth of the seal that remembers (3.3): its maximum moves by 0.2 % from mesh to mesh,
+and four times as coarse it is not yet near its limit. Friction and contact area of the pin at 3 mm/s (7.6 and 7.7): its
+meshes differ by 1 %, those of the next pair by 0.2 %. A third, coarser one shows no higher order.
+
+Takes twenty minutes.
 """
 
 from __future__ import annotations
 
-from ngwear.companion import COARSER, coarser, estimates, reading, scaled
+from collections.abc import Mapping
+from dataclasses import replace
+
+from ngwear.companion import COARSER, coarser, reading, scaled, stated
+from ngwear.run import Result
 from ngwear.run import run as run_scene
+from ngwear.run_pin import estimates as pin_estimates
+from ngwear.run_pin import readings as pin_readings
+from ngwear.scene import Scene
+from ngwear.seen_order import relative_errors
+from ngwear.sliding.pin import COARSER as PIN_COARSER
+from ngwear.sliding.pin import slide_pin
+from ngwear.verify import pin_on_plate
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.rod_seal import shipped_scene
 
 CASE = "error_estimates"
-FOLDERS = ("shaft_on_plate", "starving_lubrication", "rod_seal")
+FINER = {
+    ("shaft_on_plate", "scene.toml"): 1 / 4,
+    ("starving_lubrication", "scene.toml"): 1 / 4,
+    ("rod_seal", "scene.toml"): 1 / 2,
+    ("rod_seal", "scene_filled.toml"): 1 / 2,
+}
+SPEEDS = (3.0, 1036.0)  # of the pin [mm/s]
 LEAST = 1e-3  # relative error that can be told from chance
 BAND = (0.5, 3.0)
 
@@ -27,16 +53,46 @@ BAND = (0.5, 3.0)
 def run() -> list[Check]:
     """Run the case."""
     checks = []
-    for folder in FOLDERS:
-        watch, scene = Stopwatch(), shipped_scene(folder=folder)
-        results = [run_scene(s, figures=False) for s in (coarser(scene), scene, scaled(scene, 1 / COARSER))]
-        coarse, mine, fine = (reading(r.summary, r.recorder.rows) for r in results)
-        stated, true = estimates(mine, coarse), estimates(mine, fine)
-        for name in stated:
-            ratio = max(stated[name], LEAST) / max(true[name], LEAST)
-            words = f"{folder}: stated over true error of the {name[:-4]}"
-            for limit, bound in zip(BAND, ("above", "below"), strict=True):
-                checks.append(
-                    Check(CASE, f"{words}, {bound} {limit:g} [-]", ratio, limit, 0.0, watch.seconds, bound=bound)
-                )
+    for (folder, name), factor in FINER.items():
+        scene = shipped_scene(name, folder)
+        checks += of_run(scene.name, scene, factor)
+    return [*checks, *of_pin()]
+
+
+def of_run(words: str, scene: Scene, factor: float) -> list[Check]:
+    """A scene's estimates against a run so many times as coarse."""
+    watch = Stopwatch()
+    result, finest = (run_scene(level, figures=False) for level in (scene, scaled(scene, factor)))
+    said = stated_of(result, scene)
+    true = relative_errors(reading(result.recorder.rows), reading(finest.recorder.rows))
+    return effectivities(CASE, words, said, true, watch.seconds)
+
+
+def stated_of(result: Result, scene: Scene) -> dict[str, float]:
+    """What a run that ended would have stated beside its companions."""
+    levels = [run_scene(coarser(scene, COARSER**power), figures=False) for power in (1, 2)]
+    mine, other, coarsest = (reading(r.recorder.rows) for r in (result, *levels))
+    return stated(scene, result.summary["error estimates"], mine, other, coarsest)
+
+
+def of_pin() -> list[Check]:
+    """The pin's, from its pairs of meshes, against the finer of the next pair."""
+    watch, scene = Stopwatch(), replace(pin_on_plate.shipped_scene(), speeds=SPEEDS)
+    mesh = scene.mesh
+    finer = replace(mesh, patch=mesh.patch / PIN_COARSER, column=mesh.column / PIN_COARSER)
+    pairs, finest = ([slide_pin(scene.pin, v, mesh=m) for v in SPEEDS] for m in (mesh, finer))
+    mine, fine = (pin_readings([pair[1] for pair in p]) for p in (pairs, finest))
+    return effectivities(CASE, "pin on plate", pin_estimates(scene, pairs), relative_errors(mine, fine), watch.seconds)
+
+
+def effectivities(
+    case: str, words: str, said: Mapping[str, float], true: Mapping[str, float], seconds: float
+) -> list[Check]:
+    """Stated over true errors against the band."""
+    checks = []
+    for name, error in true.items():
+        ratio = max(said[name], LEAST) / max(error, LEAST)
+        label = f"{words}: stated over true error of the {name[:-4]}"
+        for limit, bound in zip(BAND, ("above", "below"), strict=True):
+            checks.append(Check(case, f"{label}, {bound} {limit:g} [-]", ratio, limit, 0.0, seconds, bound=bound))
     return checks

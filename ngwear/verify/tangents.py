@@ -6,6 +6,8 @@ unknowns' rows (displacement, pressures, travel), so that none hides another; th
 are near 10 %. Contact is loaded left of the middle and open right of it; the change of state is too small
 to carry an integration point across. What a solve holds fixed (the stretch in the wear compliance, the
 wetted part of the outline, the pressure about which a law of wear is linearised) is fixed here.
+
+Displacements of order 2; all terms of a section that sees other orders are tried with those too.
 """
 
 from __future__ import annotations
@@ -118,9 +120,11 @@ class _HeldWear(PressureWear):
             self._bound.Set(0.0)
 
 
-def _contact(surface: RigidSurface, forced: bool, wear: float, law: WearLaw | None = None) -> UnilateralContact:
+def _contact(
+    surface: RigidSurface, forced: bool, wear: float, law: WearLaw | None = None, **order: int
+) -> UnilateralContact:
     kind = PatchContact if isinstance(surface, Sphere) else Contact
-    contact = kind("rigid", ("top",), surface, force_controlled=forced, modulus=1.5)
+    contact = kind("rigid", ("top",), surface, force_controlled=forced, modulus=1.5, **order)
     if law is not None:
         contact.pressure_wear = _HeldWear(law, modulus=1.5, coefficient=Coefficient("rigid", FRICTION[" by pressure"]))
     contact.load.Set(2.0 if forced else 0.05)
@@ -151,9 +155,30 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
                 sticks.travel.Set(0.02)
                 yield f"stick and slip{by}, {name}, {how}, {kin}", kinematics, [contact, sticks]
     for kin, kinematics in SECTION.items():
-        fluid = FluidPressure(("right", "top"), ("right",), ())
-        fluid.pressure.Set(2.0)
-        yield f"fluid pressure, {kin}", kinematics, [fluid]
+        yield f"fluid pressure, {kin}", kinematics, [_fluid()]
+
+
+def _fluid() -> FluidPressure:
+    fluid = FluidPressure(("right", "top"), ("right",), ())
+    fluid.pressure.Set(2.0)
+    return fluid
+
+
+def _cases_of_order(order: int) -> Iterator[tuple[str, Kinematics, list[Term]]]:
+    for (kin, kinematics), (name, material) in itertools.product(SECTION.items(), MATERIALS.items()):
+        yield f"elasticity, {name}, {kin}, order {order}", kinematics, [Elasticity(material, order=order)]
+    for (kin, kinematics), (name, surface) in itertools.product(SECTION.items(), SURFACES.items()):
+        of = f"{name}, force and wear, {kin}, order {order}"
+        yield f"contact, {of}", kinematics, [_contact(surface, True, 0.02, order=order)]
+        contact = _contact(surface, True, 0.02, order=order)
+        yield f"full sliding, {of}", kinematics, [contact, _FullSliding(contact, FRICTION[""])]
+        contact = _contact(surface, True, 0.02, order=order)
+        sticks = StickSlip(contact, FRICTION[""])
+        sticks.travel.Set(0.02)
+        if order > 1:
+            yield f"stick and slip, {of}", kinematics, [contact, sticks]
+    for kin, kinematics in SECTION.items():
+        yield f"fluid pressure, {kin}, order {order}", kinematics, [_fluid()]
 
 
 def run() -> list[Check]:
@@ -163,9 +188,10 @@ def run() -> list[Check]:
         thickness=TOP, track_radius=8.0, reach=2.0, beside=1.5, seeds=NOWHERE, sizes=NOWHERE[:, 0], coarse=1.0
     )
     checks = []
-    for label, kinematics, terms in _cases():
+    others = [(order, *case) for order in (1, 3) for case in _cases_of_order(order)]
+    for order, label, kinematics, terms in [*((2, *case) for case in _cases()), *others]:
         clock, rng = Stopwatch(), np.random.default_rng(7)
-        problem = Problem(solid if isinstance(kinematics, Solid) else section, kinematics, terms)
+        problem = Problem(solid if isinstance(kinematics, Solid) else section, kinematics, terms, order=order)
         _set_state(problem, rng)
         for term in terms:
             term.prepare()

@@ -1,13 +1,17 @@
 """The shipped section that loses elements (case C5): what it loses in 60 min, and how far that depends on its settings.
 
-- The scene as shipped, 60 min: it ends; wear takes at least ten elements' sides off, layer after layer; friction tears
-  elements out; the lip and the ridges beside it are worn most; what each cause takes adds up to the section's loss.
-- Its first 4 min again with elements of half the side, with two and with eight evaluations a cycle instead of four, and
-  with half the error that a jump may make: area lost in all and greatest depth over those of the scene as shipped, and
-  the share of the torn area. Only the area on the finer mesh has a bound that was asked for (10 %). For the rest nobody
-  has derived a reference: the bounds are above what was measured, and say what the scene's choices are worth.
+- The scene as shipped: it ends; wear takes at least ten elements' sides off, layer after layer; friction tears elements
+  out; the lip and the ridges beside it are worn most; what each cause takes adds up to the section's loss.
+- The same hour with two and with eight evaluations a cycle instead of four, and with half the error that a jump may
+  make: area lost in all and greatest depth over those of the scene as shipped, and the share of the torn area. With
+  elements of half the side, both meshes with two evaluations a cycle, which halves the time that this takes. Only the
+  area on the finer mesh has a bound that was asked for (10 %). For the rest nobody has derived a reference: the bounds
+  are above what was measured, and say what the scene's choices are worth.
+- What the hour states of its own errors (``error_estimates``), over what it differs by from the finer elements. The
+  greatest pressure misses the band: on edges that elements have left it rises with every finer mesh, and no coarser
+  one tells. So does, on the safe side, friction.
 
-Units: mm, N, MPa. Takes an hour and a half, two thirds of it the finer mesh.
+Units: mm, N, MPa. Takes an hour and a half, most of it the finer mesh.
 """
 
 from __future__ import annotations
@@ -18,20 +22,26 @@ from typing import Any
 
 import numpy as np
 
+from ngwear.companion import reading
 from ngwear.program import Stroke
 from ngwear.results import BOOK
+from ngwear.run import Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
+from ngwear.seen_order import relative_errors
 from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.error_estimates import effectivities, stated_of
 from ngwear.verify.rod_seal import shipped_scene
 
 CASE = "torn_seal"
-MINUTES = 4.0  # of the variants
+FINER_DEPTH = 0.34  # mm, of the finer layers: the hour wears 0.26
+SHIPPED = "as shipped"
 
 
 def finer(scene: Scene) -> Scene:
     """The scene with elements of half the side."""
-    return replace(scene, accuracy=replace(scene.accuracy, patch=scene.accuracy.patch / 2))
+    accuracy = replace(scene.accuracy, patch=scene.accuracy.patch / 2)
+    return replace(scene, accuracy=accuracy, deactivation=replace(scene.deactivation, depth=FINER_DEPTH))
 
 
 def careful(scene: Scene) -> Scene:
@@ -53,46 +63,40 @@ def evaluated(scene: Scene, evaluations: int) -> Scene:
     return replace(scene, program=replace(program, cycle=cycle, strokes=cycles * evaluations))
 
 
-VARIANTS: dict[str, tuple[Callable[[Scene], Scene], float, float]] = {
-    "elements of half the side": (finer, 0.10, 0.01),
-    "two evaluations a cycle": (lambda scene: evaluated(scene, 2), 0.01, 0.01),
-    "eight evaluations a cycle": (lambda scene: evaluated(scene, 8), 0.01, 0.01),
-    "half the error of a jump": (careful, 0.01, 0.01),
+TWO = "two evaluations a cycle"
+VARIANTS: dict[str, tuple[str, Callable[[Scene], Scene], float, float]] = {
+    TWO: (SHIPPED, lambda scene: evaluated(scene, 2), 0.01, 0.01),
+    "eight evaluations a cycle": (SHIPPED, lambda scene: evaluated(scene, 8), 0.01, 0.01),
+    "half the error of a jump": (SHIPPED, careful, 0.01, 0.01),
+    "elements of half the side": (TWO, lambda scene: finer(evaluated(scene, 2)), 0.10, 0.01),
 }
-
-
-def shortened(scene: Scene) -> Scene:
-    """The scene's first minutes."""
-    program = scene.program
-    kinds = len(program.cycle)
-    cycles = int(60.0 * MINUTES / sum(stroke.duration for stroke in program.cycle))
-    return replace(scene, program=replace(program, strokes=kinds * cycles), save=replace(scene.save, strokes=()))
 
 
 def run() -> list[Check]:
     """Run the case."""
-    shipped, watch = shipped_scene(folder="torn_seal"), Stopwatch()
-    checks = whole(shipped)
-    watch.start()
-    base = run_scene(shortened(shipped)).summary
-    seconds = watch.seconds
-    checks.append(_check("torn share of the area lost [-]", _torn(base), 0.0, seconds, "above"))
-    for name, (vary, area, depth) in VARIANTS.items():
+    scene, watch = shipped_scene(folder="torn_seal"), Stopwatch()
+    results = {SHIPPED: run_scene(scene)}
+    checks = whole(scene, results[SHIPPED], watch.seconds)
+    checks.append(_check("torn share of the area lost [-]", _torn(results[SHIPPED]), 0.0, watch.seconds, "above"))
+    plain = replace(scene, save=replace(scene.save, strokes=()))
+    for name, (of, vary, area, depth) in VARIANTS.items():
         watch.start()
-        other = run_scene(shortened(vary(shipped))).summary
+        results[name] = run_scene(vary(plain))
         for quantity, tolerance in (("area lost in all [mm^2]", area), ("maximum depth [mm]", depth)):
-            label = f"{quantity[: quantity.index(' [')]} over the scene's, {name} [-]"
-            ratio = other[quantity] / base[quantity]
+            label = f"{quantity[: quantity.index(' [')]} over that {of}, {name} [-]"
+            ratio = results[name].summary[quantity] / results[of].summary[quantity]
             checks.append(Check(CASE, label, ratio, 1.0, tolerance, watch.seconds))
-        checks.append(_check(f"torn share of the area lost, {name} [-]", _torn(other), 0.0, watch.seconds, "above"))
-    return checks
+        torn = _torn(results[name])
+        checks.append(_check(f"torn share of the area lost, {name} [-]", torn, 0.0, watch.seconds, "above"))
+    mine = results[TWO]
+    true = relative_errors(*(reading(result.recorder.rows) for result in (mine, results["elements of half the side"])))
+    said = stated_of(mine, evaluated(plain, 2))
+    return checks + effectivities(CASE, scene.name, said, true, watch.seconds)
 
 
-def whole(scene: Scene) -> list[Check]:
+def whole(scene: Scene, result: Result, seconds: float) -> list[Check]:
     """Sixty minutes as shipped."""
-    watch = Stopwatch()
-    result = run_scene(scene)
-    summary, seconds = result.summary, watch.seconds
+    summary = result.summary
     side = scene.accuracy.patch
     lost = summary["area lost in all [mm^2]"]
     booked = sum(summary[f"area lost by {cause} [mm^2]"] for cause in BOOK.values()) + summary["worn area [mm^2]"]
@@ -111,5 +115,6 @@ def _check(quantity: str, value: float, reference: float, seconds: float, bound:
     return Check(CASE, quantity, value, reference, 0.0, seconds, bound=bound)
 
 
-def _torn(summary: dict[str, Any]) -> float:
+def _torn(result: Result) -> float:
+    summary = result.summary
     return float(np.divide(summary["area lost by tearing [mm^2]"], summary["area lost in all [mm^2]"]))

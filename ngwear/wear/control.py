@@ -12,6 +12,7 @@ Array = NDArray[np.float64]
 
 GROWTH = 3.0
 SAFETY = 0.9
+STRETCH = 1.25  # how much longer a step may become so that one less remains
 
 
 @dataclass
@@ -36,6 +37,11 @@ class JumpControl:
     tolerance: float
     cycles: int = 1
     longest: int = 1000
+
+    def share(self, left: int) -> int:
+        """Cycles of the next step when so many are left to the next mark: steps of one length, none a remnant."""
+        steps = max(1, math.ceil(left / (STRETCH * self.cycles) - 1e-9))
+        return math.ceil(left / steps) if steps <= 2 else min(self.cycles, left)
 
     def accepts(self, ratio: float, cycles: int) -> bool:
         """Whether a step with this error ratio stands; single cycles always do."""

@@ -6,7 +6,7 @@ from ngwear.run import run
 
 SUMMARY = {
     "worn area [mm^2]": 0.020284,
-    "maximum depth [mm]": 0.023798,
+    "maximum depth [mm]": 0.023940,  # 0.024009 in strokes a tenth as long
     "first stroke roller peak pressure [MPa]": 0.59784,
     "last stroke roller peak pressure [MPa]": 0.54279,
 }

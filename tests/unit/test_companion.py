@@ -5,13 +5,15 @@ import numpy as np
 import pytest
 
 from ngwear import companion
-from ngwear.companion import FILE, coarser, estimates, reading, run_stated
+from ngwear.companion import COARSEST, FILE, PLACES, coarser, reading, run_stated, stated
+from ngwear.materials import PronySeries
 from ngwear.results import fingerprint
+from ngwear.seen_order import relative_errors
 from ngwear.verify.no_loss import scene
 
 
 @pytest.fixture(scope="module")
-def stated(tmp_path_factory):
+def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
     return folder, run_stated(scene("implicit"), out=folder)
 
@@ -24,7 +26,7 @@ def test_errors_by_hand():
         "nothing": {"leak": 0.0},
         "none": {},
     }
-    found = estimates(mine, other)
+    found = relative_errors(mine, other)
     assert found["depth"] == pytest.approx(0.1)
     assert found["force"] == pytest.approx(0.1), "of the largest force, not of one that vanishes"
     assert found["nothing"] == found["none"] == 0.0
@@ -34,7 +36,7 @@ def test_an_error_of_order_half_to_two_is_met_within_a_factor_of_three():
     for order, effectivity in ((0.5, 0.414), (1.0, 1.0), (1.5, 1.83), (2.0, 3.0)):
         exact, error = 3.0, 1e-5
         mine, other = ({"q": {"q": exact + error * edge**order}} for edge in (1.0, 2.0))
-        assert estimates(mine, other)["q"] * exact / error == pytest.approx(effectivity, rel=2e-3)
+        assert relative_errors(mine, other)["q"] * exact / error == pytest.approx(effectivity, rel=2e-3)
 
 
 def test_the_companion_is_coarser_in_every_setting():
@@ -48,29 +50,81 @@ def test_the_companion_is_coarser_in_every_setting():
     assert replace(coarser(fine), accuracy=fine.accuracy, save=fine.save) == fine
 
 
-def test_a_run_states_the_error_of_all_that_is_read_off(stated):
-    folder, result = stated
+def test_a_run_states_the_error_of_all_that_is_read_off(finished):
+    folder, result = finished
     errors = json.loads((folder / "summary.json").read_text())["error estimates"]
     assert errors == result.summary["error estimates"]
-    other = companion.run_scene(coarser(scene("implicit")), figures=False)
-    off = abs(other.summary["maximum depth [mm]"] / result.summary["maximum depth [mm]"] - 1)
-    assert errors["maximum depth [-]"] == pytest.approx(off)
-    for name in ("worn area [-]", "peak pressure [-]", "contact width [-]", "friction force [-]"):
-        assert 0 < errors[name] < 0.5, name
-    assert result.summary["solves of the companion"] == other.summary["solves"]
-    read = reading(other.summary, other.recorder.rows)
+    others = [companion.run_scene(coarser(scene("implicit"), factor), figures=False) for factor in (2.0, 4.0)]
+    mine, *theirs = (reading(r.recorder.rows) for r in (result, *others))
+    found = relative_errors(mine, *theirs)
+    for name in ("maximum depth", "worn area", "peak pressure", "contact width", "friction force"):
+        assert errors[f"{name} by mesh [-]"] == pytest.approx(found[f"{name} [-]"]), name
+        steps = errors.get(f"{name} by the wear steps alone [-]", 0.0)
+        assert errors[f"{name} [-]"] == pytest.approx(found[f"{name} [-]"] + steps), "its steps are prescribed"
+        assert 0 < found[f"{name} [-]"] < 0.5, name
+    for other, name in zip(others, ("companion", "coarsest companion"), strict=True):
+        assert result.summary[f"solves of the {name}"] == other.summary["solves"]
+
+
+def test_histories_are_read_along_the_last_half(finished):
+    _, result = finished
+    rows, strokes = result.recorder.rows, result.summary["strokes"]
+    read = reading(rows)
     assert set(read["peak pressure [-]"]) == {f"{kind}: cylinder peak pressure [MPa]" for kind in ("forth", "back")}
+    (depth,) = read["maximum depth [-]"].values()
+    assert len(depth) == PLACES
+    assert depth[-1] == pytest.approx(result.summary["maximum depth [mm]"])
+    done = [r for r in rows if r["kind [-]"] == "back"]
+    half = np.interp(strokes / 2, [r["stroke [-]"] for r in done], [r["maximum depth [mm]"] for r in done])
+    assert depth[0] == pytest.approx(half)
+    looked_at = dict(rows[-1], **{"strokes in one solve [-]": 0, "maximum depth [mm]": 9.0})
+    assert reading([*rows, looked_at]) == read
+    assert all(len(force) == 1 for force in read["friction force [-]"].values())
 
 
-def test_a_companion_that_has_ended_is_not_run_again(stated, monkeypatch):
-    folder, result = stated
+def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
+    whole = scene("implicit")
+    program = replace(whole.program, cycle=tuple(replace(s, speed=1.0) for s in whole.program.cycle))
+    arms = PronySeries((0.5,), (1e-4 * min(s.duration for s in program.cycle),))
+    jumps = replace(whole, deactivation=None, prony=arms, program=program, wear=replace(whole.wear, step="jump"))
+    bound, embedded = jumps.folding.bound, {"maximum depth [-]": 0.02, "worn area [-]": 0.01}
+    assert 0 < bound < 1e-3
+    mine, other = ({"maximum depth [-]": {"d": [d]}, "peak pressure [-]": {"p": [2 * d]}} for d in (1.0, 1.04))
+    found = stated(jumps, embedded, mine, other)
+    assert found["stress by arms folded away [-]"] == bound
+    for name in ("maximum depth", "peak pressure"):
+        assert found[f"{name} by mesh and wear steps [-]"] == pytest.approx(0.04)
+        assert found[f"{name} [-]"] == pytest.approx(0.04 + bound)
+    assert found["maximum depth by the wear steps alone [-]"] == 0.02
+    each = stated(replace(jumps, wear=replace(jumps.wear, step="each")), embedded, mine, other)
+    assert each["maximum depth [-]"] == pytest.approx(0.04 + bound + 0.02)
+    assert each["peak pressure [-]"] == pytest.approx(0.04 + bound)
+    assert each["maximum depth by mesh [-]"] == pytest.approx(0.04)
+
+
+def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
+    folder, result = finished
+    other = json.loads((folder / FILE).read_text())
+    coarsest = {"scene": fingerprint(coarser(scene("implicit"), 4.0)), "gave up": "no equilibrium"}
+    for name, left in ((FILE, other), (COARSEST, coarsest)):
+        (tmp_path / name).write_text(json.dumps(left))
+    summary = run_stated(scene("implicit"), out=tmp_path).summary
+    assert summary["warnings"] == [
+        "the coarsest companion run gave up: no equilibrium; the error of the mesh is taken as of first order"
+    ]
+    found = relative_errors(reading(result.recorder.rows), other["reading"])
+    assert summary["error estimates"]["peak pressure [-]"] == pytest.approx(found["peak pressure [-]"])
+
+
+def test_a_companion_that_has_ended_is_not_run_again(finished, monkeypatch):
+    folder, result = finished
     monkeypatch.setattr(companion, "get_context", None)
     again = run_stated(scene("implicit"), out=folder, resume=True)
     assert again.summary["error estimates"] == result.summary["error estimates"]
 
 
-def test_the_readings_of_another_scene_are_not_taken(stated, tmp_path):
-    folder, result = stated
+def test_the_readings_of_another_scene_are_not_taken(finished, tmp_path):
+    folder, result = finished
     left = json.loads((folder / FILE).read_text())
     assert left["scene"] == fingerprint(coarser(scene("implicit")))
     left["scene"], left["reading"]["maximum depth [-]"] = "another", {"maximum depth [mm]": 1.0}
@@ -94,8 +148,8 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     assert np.isfinite(summary["error estimates"]["maximum depth [-]"])
 
 
-def test_pressures_are_drawn_in_the_band_of_their_error(stated):
-    folder, result = stated
+def test_pressures_are_drawn_in_the_band_of_their_error(finished):
+    folder, result = finished
     from ngwear.plots.wear import history_figure
     from ngwear.result_file import read_result
 

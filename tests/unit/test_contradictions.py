@@ -40,3 +40,25 @@ FRICTIONLESS, WEARLESS = ("friction = 0.1\n", ""), ("specific_wear_rate = 1.0e-3
 def test_contradictions_say_which_and_why(tmp_path, write_sheet, changes, message):
     with pytest.raises(SceneError, match=message):
         read_scene(write_sheet(tmp_path, *changes))
+
+
+STICKS, DEACTIVATES = ("force = 0.5", "force = 0.5\nsticks = true"), ("[wear]", "[deactivation]\ndepth = 0.3\n\n[wear]")
+
+
+@pytest.mark.parametrize(
+    ("order", "changes", "message"),
+    [
+        (1, (STICKS,), r"accuracy\.order = 1: must be 2 or 3 where friction may stick, as in contact 'roller'"),
+        (3, (DEACTIVATES, ('step = "each"', 'step = "each"\nremesh = "never"')), r"order = 3: .* deactivates elements"),
+        (4, (), r"accuracy\.order = 4: must be one of \[1, 2, 3\]"),
+    ],
+)
+def test_orders_that_an_effect_cannot_have_are_refused(tmp_path, write_sheet, order, changes, message):
+    with pytest.raises(SceneError, match=message):
+        read_scene(write_sheet(tmp_path, *changes, ("[accuracy]", f"[accuracy]\norder = {order}")))
+
+
+def test_other_orders_are_taken(tmp_path, write_sheet):
+    assert read_scene(write_sheet(tmp_path / "1", ("[accuracy]", "[accuracy]\norder = 1"))).accuracy.order == 1
+    sticking = write_sheet(tmp_path / "3", STICKS, ("[accuracy]", "[accuracy]\norder = 3"))
+    assert read_scene(sticking).accuracy.order == 3

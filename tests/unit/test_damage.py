@@ -241,7 +241,8 @@ def test_jumps_tear_what_single_cycles_tear():
     contacts, program = (replace(spec, specific_wear_rate=1e-12),), Program(cycle=base.program.cycle, strokes=16)
     found = []
     for step in ("each", "jump"):
-        one = replace(base, contacts=contacts, program=program, wear=replace(base.wear, step=step))
+        accuracy, wear = replace(base.accuracy, longest_jump=1.0), replace(base.wear, step=step)
+        one = replace(base, contacts=contacts, program=program, accuracy=accuracy, wear=wear)
         stepper = Stepper(one)
         state, steps = stepper.start(), 0
         while not stepper.finished(state):

@@ -206,6 +206,21 @@ def test_what_a_wall_gains_or_loses_as_its_ends_are_merged_is_in_the_book(sinks)
     assert state.contour.area == pytest.approx(state.cells.area, rel=1e-12)
 
 
+@pytest.mark.parametrize("places", [(1.0,), (1.0, 1.5)])
+def test_wear_that_reaches_a_hole_opens_it(places):
+    """A hole lies in the second layer, and the surface above it sinks to one of its corners, or to both."""
+    holed = BLOCK.without(np.arange(24) == 14, Fate.TORN)
+    assert len(holed.holes()) == 4
+    state = held(holed, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), NOTHING)
+    outline, points = state.contour, state.contour.points.copy()
+    points[(points[:, 1] == 2.0) & np.isin(points[:, 0], places), 1] -= 0.45
+    deactivation.follow(state, outline, points)
+    lost = sum(state.ledger.lost.values())
+    assert len(state.cells.holes()) == 0
+    assert holed.area - state.cells.area == pytest.approx(outline.area - polygon_area(points) + lost, rel=1e-12)
+    assert state.contour.area == pytest.approx(state.cells.area, rel=1e-12)
+
+
 def close(first, second):
     for row, other in zip(first, second, strict=True):
         assert row.keys() == other.keys()

@@ -6,13 +6,14 @@ import json
 from dataclasses import replace
 
 import h5py
+import numpy as np
 import pytest
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.errors import SceneError
 from ngwear.materials import PronySeries
 from ngwear.scenefile import read_scene
-from ngwear.sliding.pin import slide_pin
+from ngwear.sliding.pin import COARSER, slide_pin
 
 SCENE = """
 [scene]
@@ -64,6 +65,25 @@ def test_files_of_a_run(finished):
     with h5py.File(out / "result.h5") as h5:
         assert h5["speeds/000/faces/pressure [MPa]"].shape == h5["speeds/000/faces/centres, undeformed [mm]"].shape[:1]
     assert {"friction.png", "contact.png", "sheet_slowest.png", "sheet_fastest.png"} <= {p.name for p in out.iterdir()}
+
+
+def test_a_run_states_its_errors_and_draws_them(finished):
+    from ngwear.plots.pin import friction_figure, read_pin
+
+    read = read_pin(finished / "out")
+    errors, series = read.errors, read.series
+    assert errors == json.loads((finished / "out" / "summary.json").read_text())["error estimates"]
+    fine, coarse = series["penetration [mm]"], series["penetration on the coarse mesh [mm]"]
+    first_order = np.linalg.norm(fine - coarse) / (COARSER - 1) / np.linalg.norm(fine)
+    assert errors["maximum depth by mesh and time steps [-]"] == pytest.approx(first_order)
+    folded = errors["stress by arms folded away [-]"]
+    assert 0 <= folded <= 1e-3
+    for name in ("maximum depth", "friction coefficient", "contact area", "peak pressure"):
+        assert errors[f"{name} [-]"] == pytest.approx(errors[f"{name} by mesh and time steps [-]"] + folded)
+        assert 0 < errors[f"{name} [-]"] < 1, name
+    (band,) = friction_figure(read).axes[0].collections
+    top = (1 + errors["friction coefficient [-]"]) * series["friction coefficient [-]"].max()
+    assert band.get_paths()[0].vertices[:, 1].max() == pytest.approx(top)
 
 
 def test_figures_are_drawn_again(finished, capsys):

@@ -550,3 +550,10 @@ def test_surface_that_never_touches_is_refused(tmp_path, write_sheet):
     scene = read_scene(write_sheet(tmp_path, ("force = 0.5\n", ""), ("3.99", "4.1")))
     with pytest.raises(SceneError, match=r"'roller'.*lifts off: it touches its edges in no stroke.*move it closer"):
         run(scene, figures=False)
+
+
+def test_jumps_of_a_fixed_length(sheet):
+    """Seven cycles in threes, whatever the error; the last is what is left."""
+    wear = replace(sheet.wear, step="fixed", max_jump=3)
+    result = run(replace(sheet, wear=wear, program=replace(sheet.program, strokes=7)), figures=False)
+    assert [row["strokes in one solve [-]"] for row in result.recorder.rows] == [0, 3, 3, 1]

@@ -1,0 +1,154 @@
+"""A run that states an error no larger than was asked for: finer and finer levels, the last of which is kept.
+
+A level has two or four times as many elements across the contacts as the one before, and tolerances of stresses and
+wear that go along (``Accuracy``). Within it the run chooses the patch with each new mesh, the elements elsewhere by
+their stresses, and the jumps by what the wear steps err by. Levels are the companions of finer ones
+(``ngwear.companion``), so that the first alone needs two of its own.
+
+The error meant is that of the greatest depth; others are stated beside it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ngwear.accuracy import MOST_ACROSS, Accuracy
+from ngwear.companion import COARSER, COARSEST, COSTS, FILE, coarser, leave, left_by, reading, run_stated
+from ngwear.errors import ResultError
+from ngwear.files import CHECKPOINT, COMPLETED, OutFolder
+from ngwear.results import fingerprint
+from ngwear.run import Result
+from ngwear.scene import Scene
+
+LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
+FIRST, AT = 8.0, 0.01  # elements across of the first level when so much error is asked for
+COARSEST_FIRST, FINEST_FIRST = 4.0, 32.0
+MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
+ACROSS, STATED, CPU = "elements across [-]", "maximum depth [-]", "CPU time [s]"
+
+
+def first_across(error: float) -> float:
+    """Elements across the contacts to begin with: between 4 and 32, twice as many for half the error."""
+    return min(max(FIRST * 2.0 ** round(math.log2(AT / error)), COARSEST_FIRST), FINEST_FIRST)
+
+
+def next_across(across: float, stated: float | None, error: float) -> float | None:
+    """Elements across of the next level; None if a level is accurate enough, or there is no finer one.
+
+    Errors are taken as of first order, and at most two levels are taken at once, one where the error is not known.
+    """
+    if stated is not None and stated <= error:
+        return None
+    steps = 1 if stated is None else min(MOST_STEPS, math.ceil(math.log2(stated / error) - 1e-9))
+    while steps and across * COARSER**steps > MOST_ACROSS:
+        steps -= 1
+    return across * COARSER**steps if steps else None
+
+
+def run_to_error(
+    scene: Scene, *, out: Path | str, resume: bool = False, progress: bool = False, throw: bool = True
+) -> Result:
+    """Run a scene whose ``accuracy.error`` is given on as fine a level as that takes.
+
+    Earlier levels stay in the folder's ``levels``. If the finest there is states more than was asked for, its summary
+    warns. ``summary["levels"]`` tells each level's error and seconds.
+
+    Parameters and errors as ``run``.
+    """
+    folder, error = OutFolder(Path(out), CHECKPOINT, resume=resume), scene.accuracy.error
+    done = _earlier(folder, scene, resume=resume)
+    across = next_across(done[-1][ACROSS], done[-1][STATED], error) if done else first_across(error)
+    while True:
+        level = at_level(scene, across)
+        _hand_down(folder, level, done)
+        told = _Told(done, across, error)
+        result = run_stated(level, out=out, resume=resume, progress=progress, throw=throw, told=told, figures=False)
+        finer = next_across(across, told.mine.get(STATED), error) if result.status == COMPLETED else None
+        if finer is None:
+            if result.recorder.rows:
+                from ngwear.plots.wear import plot
+
+                plot(folder.path)
+            return result
+        kept = {name: result.summary[name + unit] for name, unit in COSTS}
+        done.append(told.mine | {"left": kept | {"reading": reading(result.recorder.rows)}})
+        notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
+        folder.replace(NOTES, lambda file, notes=notes: file.write(notes))
+        _put_away(folder, across)
+        across = finer
+
+
+def at_level(scene: Scene, across: float) -> Scene:
+    """The scene with so many elements across its contacts, and tolerances that go along."""
+    return replace(scene, accuracy=scene.accuracy.given(Accuracy(across=across)))
+
+
+class _Told:
+    """What a level's summary tells of what was asked for, and of all levels."""
+
+    def __init__(self, done: list[dict[str, Any]], across: float, error: float) -> None:
+        self.done, self.across, self.error = done, across, error
+        self.mine: dict[str, Any] = {}
+
+    def __call__(self, summary: dict[str, Any]) -> None:
+        stated = summary["error estimates"]
+        known = any(name.startswith(f"{STATED[:-4]} by mesh") for name in stated)
+        run = {entry[ACROSS] for entry in self.done}
+        cpu = summary[CPU]
+        for power, name in ((1, "companion"), (2, "coarsest companion")):
+            if self.across / COARSER**power not in run:
+                cpu += summary.get(f"CPU time of the {name} [s]", 0.0)
+        self.mine = {ACROSS: self.across, STATED: stated[STATED] if known else None, CPU: round(cpu, 3)}
+        levels = [{name: entry[name] for name in (ACROSS, STATED, CPU)} for entry in (*self.done, self.mine)]
+        summary["error asked for [-]"], summary["levels"] = self.error, levels
+        summary["CPU time of all levels [s]"] = round(sum(entry[CPU] for entry in levels), 3)
+        if not (known and stated[STATED] <= self.error) and next_across(self.across, None, self.error) is None:
+            says = f"states an error of {stated[STATED]:.2g}" if known else "does not know its error"
+            summary["warnings"].append(f"the finest level {says}; {self.error:.2g} was asked for")
+
+
+def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:
+    """What is known of the levels that an earlier process has done."""
+    file = folder.path / NOTES
+    if not resume or not file.exists():
+        file.unlink(missing_ok=True)
+        shutil.rmtree(folder.path / LEVELS, ignore_errors=True)
+        return []
+    try:
+        notes = json.loads(file.read_text())
+        of, levels = notes["scene"], notes["levels"]
+    except (OSError, ValueError, KeyError) as error:
+        raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
+    if of != fingerprint(scene):
+        raise ResultError(f"{folder.path} holds a run of another scene (or of a changed one): give another folder")
+    _put_away(folder, levels[-1][ACROSS])
+    return levels
+
+
+def _put_away(folder: OutFolder, across: float) -> None:
+    """Move a level's files to its own folder, the checkpoint last: begun but for that, it goes on after a kill."""
+    place = folder.path / LEVELS / f"{across:g}"
+    if (place / CHECKPOINT).exists():
+        return
+    place.mkdir(parents=True, exist_ok=True)
+    files = [file for file in folder.path.iterdir() if file.is_file() and file.name != NOTES]
+    for file in sorted(files, key=lambda file: file.name == CHECKPOINT):
+        file.replace(place / file.name)
+
+
+def _hand_down(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> None:
+    """Leave what earlier levels and their companions have read off as that of a level's companions."""
+    for power, name in ((1, FILE), (2, COARSEST)):
+        companion = coarser(level, COARSER**power)
+        for entry in done:
+            if entry[ACROSS] == companion.accuracy.across:
+                leave(companion, folder.path / name, entry["left"])
+            for file in (FILE, COARSEST):
+                earlier = folder.path / LEVELS / f"{entry[ACROSS]:g}" / file
+                if left_by(companion, earlier) is not None:
+                    shutil.copy(earlier, folder.path / name)

@@ -1,0 +1,66 @@
+"""Errors from two or three levels of coarseness, against readings whose limit is known."""
+
+import numpy as np
+import pytest
+
+from ngwear.seen_order import HIGHEST, LOWEST, error_of_finest, order_seen
+
+PLACES = np.linspace(1.0, 2.0, 5)
+LENGTH = np.sqrt(np.mean(PLACES**2))
+
+
+def readings(order, *, ratio=2.0):
+    """Five places whose errors are 1 % of them on the finest."""
+    return [PLACES * (1 + 0.01 * (edge**order)) for edge in ratio ** np.arange(3.0)]
+
+
+@pytest.mark.parametrize("ratio", [1.6, 2.0])
+@pytest.mark.parametrize("order", [0.7, 1.0, 1.5, 2.0])
+def test_an_order_is_seen_and_the_error_exact(order, ratio):
+    levels = readings(order, ratio=ratio)
+    assert order_seen(*levels, ratio=ratio) == pytest.approx(order)
+    assert error_of_finest(*levels, ratio=ratio) == pytest.approx(0.01 * LENGTH)
+
+
+@pytest.mark.parametrize(("order", "taken"), [(0.1, LOWEST), (5.0, HIGHEST)])
+def test_orders_out_of_reason_are_not_believed(order, taken):
+    levels = readings(order)
+    assert order_seen(*levels) == taken
+    assert error_of_finest(*levels) == pytest.approx(0.01 * (2**order - 1) / (2**taken - 1) * LENGTH)
+
+
+def test_two_levels_are_of_first_order():
+    first, second, _ = readings(1.0)
+    assert error_of_finest(first, second) == pytest.approx(0.01 * LENGTH)
+    coarse = PLACES * 1.016
+    assert error_of_finest(PLACES * 1.01, coarse, ratio=1.6) == pytest.approx(0.01 * LENGTH)
+
+
+@pytest.mark.parametrize("levels", [(1.0, 1.1, 1.05), (1.0, 1.1, 1.15), (1.0, 1.0, 1.0), (1.0, 1.1, 1.1)])
+def test_differences_that_turn_round_or_grow_show_no_order(levels):
+    assert order_seen(*levels) is None
+
+
+def test_one_place_against_the_rest_does_not_hide_the_order():
+    levels = np.array(readings(1.0))
+    levels[2, 0] = levels[1, 0] - 0.001
+    assert order_seen(*levels) == pytest.approx(1.0, abs=0.15)
+
+
+def test_readings_that_agree_have_no_error():
+    assert error_of_finest(3.0, 3.0, 3.0) == 0.0
+    assert error_of_finest([1.0, 2.0], [1.0, 2.0]) == 0.0
+
+
+@pytest.mark.parametrize("ratio", [1.6, 2.0])
+def test_scatter_about_the_limit_is_estimated_without_bias(ratio):
+    chance = np.random.default_rng(3).standard_normal((3, 20_000))
+    levels = 7.0 + 0.01 * ratio ** np.arange(3.0)[:, None] * chance
+    assert order_seen(*levels, ratio=ratio) is None
+    assert error_of_finest(*levels, ratio=ratio) == pytest.approx(0.01, rel=0.02)
+    assert error_of_finest(*levels[:2], ratio=2.0) == pytest.approx(0.01 * np.hypot(1, ratio), rel=0.02)
+
+
+def test_a_trend_that_only_the_last_difference_shows_counts_as_first_order():
+    assert 0.4 < error_of_finest(1.0, 2.0, 2.0) < 1.0
+    assert error_of_finest(1.0, 2.0, 1.9) == pytest.approx(np.sqrt(max(1 - 5 * 0.1146, 0) + 0.1146), abs=1e-3)
