@@ -19,11 +19,25 @@ from ngwear.scene import Scene
 from ngwear.sliding.scene import PinScene
 
 DEPTH, PEAK = "maximum depth [mm]", "peak pressure [MPa]"
-_began: list[float] = []  # when this process's run was sent off, by the system's clock
 
 
 class OutOfTimeError(Exception):
     """A run has used up the time that was left."""
+
+
+@dataclass
+class _Clock:
+    """When this process's run was sent off, by the system's clock, and whether its time is over."""
+
+    sent: float = math.nan
+    over: bool = False
+
+    def check(self) -> None:
+        if self.over:
+            raise OutOfTimeError
+
+
+_clock = _Clock()
 
 
 class Limited(Executor):
@@ -39,15 +53,17 @@ class Limited(Executor):
 
 def _timed(sent: float, seconds: float, call: Callable[[], Any]) -> Any:
     def stop(_: int, __: FrameType | None) -> None:
-        raise OutOfTimeError
+        _clock.over = True
+        _clock.check()
 
-    _began[:] = [sent]
+    _clock.sent, _clock.over = sent, False
     signal.signal(signal.SIGALRM, stop)
     signal.setitimer(signal.ITIMER_REAL, max(seconds - (time.time() - sent), 1e-3))
     try:
         return call()
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
+        _clock.sent, _clock.over = math.nan, False
 
 
 @dataclass(frozen=True)
@@ -72,18 +88,22 @@ class _Progress:
 
 
 def measure(point: Point) -> Measurement:
-    """Run a scene and pick what users read; a run that gives up, or is stopped, comes back as such."""
-    start, progress = time.time(), _Progress()
-    sent = _began[0] if _began else start
+    """Run a scene and pick what users read; a run that gives up, or is stopped, comes back as such.
+
+    The alarm may go off inside of a compiled library, which turns it into an error of its own, or drops it: so the
+    clock tells whether a run was stopped, not the error that it ended with.
+    """
+    progress = _Progress()
+    sent = time.time() if math.isnan(_clock.sent) else _clock.sent
     scene = point.scene
     try:
         found = _slide(scene, progress, sent) if isinstance(scene, PinScene) else _wear(scene, progress, sent)
-    except OutOfTimeError:
-        found = Measurement(status=STOPPED, message="no time was left", needed=progress.needed(time.time() - sent))
     except NgwearError as error:
         found = Measurement(status=GAVE_UP, message=str(error))
     except Exception as error:  # a mesher or a solver outside of ngwear: kept as well, or each call would try again
         found = Measurement(status=GAVE_UP, message=f"{type(error).__name__}: {error}")
+    if _clock.over and found.status == GAVE_UP:
+        found = Measurement(status=STOPPED, message="no time was left", needed=progress.needed(time.time() - sent))
     memory = peak_memory()
     return replace(found, cpu=time.process_time(), wall=time.time() - sent, memory=memory)
 
@@ -92,6 +112,7 @@ def _wear(scene: Scene, progress: _Progress, sent: float) -> Measurement:
     from ngwear.run import run
 
     def on_step(state: Any) -> None:
+        _clock.check()
         if progress.begun == 0.0:
             progress.begun = time.time() - sent
         progress.done = state.strokes / max(scene.program.strokes, 1)
@@ -137,6 +158,7 @@ def _slide(scene: PinScene, progress: _Progress, sent: float) -> Measurement:
 
     progress.begun, rows = time.time() - sent, []
     for number, speed in enumerate(scene.speeds):
+        _clock.check()
         rows.append(row(*slide_pin(scene.pin, speed, mesh=scene.mesh)))
         progress.done = (number + 1) / len(scene.speeds)
     values = {

@@ -4,7 +4,10 @@ import csv
 import io
 import json
 import math
+import time
+from concurrent.futures import Executor, Future
 from dataclasses import replace
+from types import SimpleNamespace
 
 import pytest
 from conftest import REMEMBERS
@@ -15,7 +18,7 @@ from ngwear.cost_runs import Limited, Point, measure
 from ngwear.costs import knobs as knobs_of
 from ngwear.costs.knobs import at, knobs
 from ngwear.costs.ladder import STOPPED
-from ngwear.errors import SceneError
+from ngwear.errors import ConvergenceError, SceneError
 from ngwear.scenefile import read_scene
 from ngwear.sweep import one_thread_pool, sweep
 
@@ -191,6 +194,34 @@ def test_a_run_out_of_time_is_stopped_and_says_what_it_would_take(sheet):
     assert outcome.result.status == STOPPED
     assert 5.0 < outcome.result.wall < 20.0
     assert outcome.result.needed > 100.0
+
+
+class Here(Executor):
+    """Calls at once, in this process."""
+
+    def submit(self, function, /, *args, **kwargs):
+        future = Future()
+        future.set_result(function(*args, **kwargs))
+        return future
+
+
+@pytest.mark.parametrize("made_of_it", ["another error", "nothing"])
+def test_an_alarm_that_is_swallowed_stops_the_run_all_the_same(sheet, monkeypatch, made_of_it):
+    """Compiled libraries call Python, too, and what they make of its errors is theirs."""
+
+    def swallows(scene, *, on_step, **_):
+        try:
+            time.sleep(30.0)
+        except Exception as error:
+            if made_of_it == "another error":
+                raise ConvergenceError("the solver failed") from error
+        on_step(SimpleNamespace(strokes=1))
+        pytest.fail("the run went on")
+
+    monkeypatch.setattr("ngwear.run.run", swallows)
+    found = Limited(Here(), 0.2).submit(measure, Point(sheet)).result()
+    assert found.status == STOPPED
+    assert found.message == "no time was left"
 
 
 def test_a_run_that_gives_up_says_why(tmp_path, write_sheet):
