@@ -11,6 +11,8 @@ PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor eleme
 STRESS_ERROR, WEAR_ERROR = 0.05, 0.02  # with ALIKE elements across
 LONGEST_JUMP = 5.0  # times the wear error: a tenth of the program with 0.02
 ALIKE = 12.0
+GRADING, STEEPEST = 0.25, 0.5  # with ALIKE elements across or more, and with 2
+STEEPER = 0.4  # power of the grading's growth with fewer elements: with more, stresses ask for more and more meshes
 LEAST_ACROSS, MOST_ACROSS = 0.5, 200.0
 LEAST_ERROR = 1e-3  # what two meshes differ by where nodes happen to fall, measured on the shipped scenes
 PRESETS = {"draft": 6.0, "engineering": 12.0, "reference": 24.0}  # elements across
@@ -29,8 +31,9 @@ class Accuracy:
     mounting : float or None
         Element edge at the followed edges' finest while the part is mounted [mm]; the mesh is refined after. 0.03
         unless given.
-    grading : float
-        Growth of the element edge with the distance from the patch [-].
+    grading : float or None
+        Growth of the element edge with the distance from the patch [-]; 0.25 unless given, up to 0.5 with fewer
+        elements across the contacts.
     order : int
         Polynomial order of the displacement: 1, 2 or 3, of which 3 converges fastest where all is smooth; the contact's
         edges are not. ``ngwear cost`` compares them on a scene's own elements: see ``costs.knobs``.
@@ -57,7 +60,7 @@ class Accuracy:
     patch: float | None = None
     coarse: float | None = None
     mounting: float | None = None
-    grading: float = 0.25
+    grading: float | None = None
     order: int = 2
     stress_error: float | None = None
     wear_error: float | None = None
@@ -94,12 +97,23 @@ class Accuracy:
         return cls.preset("reference")
 
     def given(self, other: Accuracy) -> Accuracy:
-        """The other's lengths and tolerances, or what stands for them, with this one's grading, order and folding."""
-        return replace(other, grading=self.grading, order=self.order, folding_error=self.folding_error)
+        """The other's lengths and tolerances, or what stands for them, with this one's order, folding and grading.
+
+        A grading that is as it is for this one's elements across, becomes as it is for the other's.
+        """
+        grading = other.grading if self.grading in (None, _usual_grading(self.across)) else self.grading
+        return replace(other, grading=grading, order=self.order, folding_error=self.folding_error)
+
+    def with_across(self, across: float, **tolerances: float) -> Accuracy:
+        """So many elements across instead, with these tolerances; the grading goes along as in ``given``."""
+        return self.given(Accuracy(across=across, **tolerances))
 
     def __post_init__(self) -> None:
         self._refuse_two_ways()
-        require(0 < self.grading <= 1, "accuracy.grading", self.grading, "must lie between 0 and 1")
+        if self.error is None:
+            self._default("grading", _usual_grading(self.across))
+        usable = self.grading is None or 0 < self.grading <= 1
+        require(usable, "accuracy.grading", self.grading, "must lie between 0 and 1")
         require(self.order in ORDERS, "accuracy.order", self.order, f"must be one of {list(ORDERS)}")
         require(
             0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
@@ -145,3 +159,8 @@ class Accuracy:
                 "accuracy.across and judge by runs of your own"
             )
             require(self.error >= LEAST_ERROR, "accuracy.error", self.error, says)
+
+
+def _usual_grading(across: float | None) -> float:
+    """Of so many elements across; of lengths if None."""
+    return GRADING if across is None else min(STEEPEST, GRADING * max(1.0, ALIKE / across) ** STEEPER)

@@ -3,7 +3,7 @@
 A level has two or four times as many elements across the contacts as the one before, and tolerances of stresses and
 wear that go along (``Accuracy``). Within it the run chooses the patch with each new mesh, the elements elsewhere by
 their stresses, and the jumps by what the wear steps err by. Levels are the companions of finer ones
-(``ngwear.companion``), so that the first alone needs two of its own.
+(``ngwear.companion``), so that the first alone needs some of its own; one, if that shows an error small enough.
 
 The error meant is that of the greatest depth; others are stated beside it.
 """
@@ -17,8 +17,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ngwear.accuracy import MOST_ACROSS, Accuracy
-from ngwear.companion import COARSER, COARSEST, COSTS, FILE, coarser, leave, left_by, reading, run_stated
+from ngwear.accuracy import MOST_ACROSS
+from ngwear.companion import COARSER, COARSEST, COSTS, DEPTH, FILE, coarser, leave, left_by, reading, run_stated
 from ngwear.errors import ResultError
 from ngwear.files import CHECKPOINT, COMPLETED, OutFolder
 from ngwear.results import fingerprint
@@ -27,13 +27,13 @@ from ngwear.scene import Scene
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
 FIRST, AT = 8.0, 0.01  # elements across of the first level when so much error is asked for
-COARSEST_FIRST, FINEST_FIRST = 4.0, 32.0
+COARSEST_FIRST, FINEST_FIRST = 2.0, 32.0
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
-ACROSS, STATED, CPU = "elements across [-]", "maximum depth [-]", "CPU time [s]"
+ACROSS, CPU = "elements across [-]", "CPU time [s]"
 
 
 def first_across(error: float) -> float:
-    """Elements across the contacts to begin with: between 4 and 32, twice as many for half the error."""
+    """Elements across the contacts to begin with: between 2 and 32, twice as many for half the error."""
     return min(max(FIRST * 2.0 ** round(math.log2(AT / error)), COARSEST_FIRST), FINEST_FIRST)
 
 
@@ -62,13 +62,15 @@ def run_to_error(
     """
     folder, error = OutFolder(Path(out), CHECKPOINT, resume=resume), scene.accuracy.error
     done = _earlier(folder, scene, resume=resume)
-    across = next_across(done[-1][ACROSS], done[-1][STATED], error) if done else first_across(error)
+    across = next_across(done[-1][ACROSS], done[-1][DEPTH], error) if done else first_across(error)
     while True:
         level = at_level(scene, across)
         _hand_down(folder, level, done)
         told = _Told(done, across, error)
-        result = run_stated(level, out=out, resume=resume, progress=progress, throw=throw, told=told, figures=False)
-        finer = next_across(across, told.mine.get(STATED), error) if result.status == COMPLETED else None
+        result = run_stated(
+            level, out=out, resume=resume, progress=progress, throw=throw, told=told, figures=False, enough=error
+        )
+        finer = next_across(across, told.mine.get(DEPTH), error) if result.status == COMPLETED else None
         if finer is None:
             if result.recorder.rows:
                 from ngwear.plots.wear import plot
@@ -85,7 +87,7 @@ def run_to_error(
 
 def at_level(scene: Scene, across: float) -> Scene:
     """The scene with so many elements across its contacts, and tolerances that go along."""
-    return replace(scene, accuracy=scene.accuracy.given(Accuracy(across=across)))
+    return replace(scene, accuracy=scene.accuracy.with_across(across))
 
 
 class _Told:
@@ -97,18 +99,18 @@ class _Told:
 
     def __call__(self, summary: dict[str, Any]) -> None:
         stated = summary["error estimates"]
-        known = any(name.startswith(f"{STATED[:-4]} by mesh") for name in stated)
+        known = any(name.startswith(f"{DEPTH[:-4]} by mesh") for name in stated)
         run = {entry[ACROSS] for entry in self.done}
         cpu = summary[CPU]
         for power, name in ((1, "companion"), (2, "coarsest companion")):
             if self.across / COARSER**power not in run:
                 cpu += summary.get(f"CPU time of the {name} [s]", 0.0)
-        self.mine = {ACROSS: self.across, STATED: stated[STATED] if known else None, CPU: round(cpu, 3)}
-        levels = [{name: entry[name] for name in (ACROSS, STATED, CPU)} for entry in (*self.done, self.mine)]
+        self.mine = {ACROSS: self.across, DEPTH: stated[DEPTH] if known else None, CPU: round(cpu, 3)}
+        levels = [{name: entry[name] for name in (ACROSS, DEPTH, CPU)} for entry in (*self.done, self.mine)]
         summary["error asked for [-]"], summary["levels"] = self.error, levels
         summary["CPU time of all levels [s]"] = round(sum(entry[CPU] for entry in levels), 3)
-        if not (known and stated[STATED] <= self.error) and next_across(self.across, None, self.error) is None:
-            says = f"states an error of {stated[STATED]:.2g}" if known else "does not know its error"
+        if not (known and stated[DEPTH] <= self.error) and next_across(self.across, None, self.error) is None:
+            says = f"states an error of {stated[DEPTH]:.2g}" if known else "does not know its error"
             summary["warnings"].append(f"the finest level {says}; {self.error:.2g} was asked for")
 
 

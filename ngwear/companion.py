@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from multiprocessing import get_context
@@ -37,11 +38,13 @@ from ngwear.sweep import end_with_parent, one_thread
 
 COARSER = 2.0
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
+DEPTH = "maximum depth [-]"
 WHOLE = {
-    "maximum depth [-]": "maximum depth [mm]",
+    DEPTH: "maximum depth [mm]",
     "worn area [-]": "area removed from the outline [mm^2]",
     "area lost in all [-]": "area lost in all [mm^2]",  # where elements are lost
 }
+POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 FORCE = "friction force"
 STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", FORCE)}
@@ -58,7 +61,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
     }
     if accuracy.across is not None:
         across = max(accuracy.across / factor, LEAST_ACROSS)
-        return replace(scene, accuracy=replace(accuracy, across=across, **tolerances))
+        return replace(scene, accuracy=accuracy.with_across(across, **tolerances))
     patch = factor * accuracy.patch
     lengths = {"patch": patch, "coarse": factor * accuracy.coarse, "mounting": max(accuracy.mounting, patch)}
     changed = replace(accuracy, **lengths, **tolerances)
@@ -137,14 +140,16 @@ def run_stated(
     throw: bool = True,
     figures: bool = True,
     told: Callable[[dict[str, Any]], None] | None = None,
+    enough: float | None = None,
 ) -> Result:
     """Run a scene and, beside it in a second process, its companions; ``summary["error estimates"]`` is from all.
 
-    Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Companions that
-    give up lose nothing: without the coarsest, errors are taken as of first order; without both, those of the mesh are
-    not known. The summary then warns.
+    Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Where the first
+    companion shows an error of the greatest depth of no more than ``enough``, taken as of first order, the coarsest is
+    stopped; what it has taken until then is not told. Companions that give up lose nothing: without the coarsest,
+    errors are taken as of first order; without both, those of the mesh are not known. The summary then warns.
     """
-    companions = _Companions(scene, Path(out))
+    companions = _Companions(scene, Path(out), enough)
 
     def state(recorder: Recorder, summary: dict[str, Any]) -> None:
         companions.state(recorder, summary)
@@ -165,14 +170,14 @@ def run_stated(
 
 
 class _Companions:
-    """Runs in a process of their own, the cheaper first, each of which leaves its readings in a file.
+    """Runs in a process of their own, the finer first, each of which leaves its readings in a file.
 
     Those of an earlier process are taken from there.
     """
 
-    def __init__(self, scene: Scene, folder: Path) -> None:
-        self.scene, self.process, self.begun = scene, None, False
-        self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((2, COARSEST), (1, FILE))]
+    def __init__(self, scene: Scene, folder: Path, enough: float | None) -> None:
+        self.scene, self.enough, self.process, self.begun = scene, enough, None, False
+        self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
 
     def __enter__(self) -> _Companions:
         return self
@@ -187,7 +192,7 @@ class _Companions:
         if self.begun:
             return
         self.begun = True
-        if left_by(*self.runs[-1]) is None:
+        if any(left_by(*run) is None for run in self.runs):
             with one_thread():
                 self.process = get_context("spawn").Process(target=_leave, args=(self.runs,), daemon=True)
                 self.process.start()
@@ -195,22 +200,32 @@ class _Companions:
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Wait for them, and put the estimates into the summary of the run."""
         self.begin()
-        if self.process is not None:
-            self.process.join()
-        coarsest, other = (left_by(*run) or {"gave up": "it ended without a word"} for run in self.runs)
+        other = self._left(*self.runs[0])
         if "gave up" in other:
             why = f"the coarser companion run gave up: {other['gave up']}"
             summary["warnings"].append(f"{why}; the error of the mesh is not known")
             return
-        if "gave up" in coarsest:
-            why = f"the coarsest companion run gave up: {coarsest['gave up']}"
-            summary["warnings"].append(f"{why}; the error of the mesh is taken as of first order")
         embedded, mine = summary["error estimates"], reading(recorder.rows)
-        summary["error estimates"] = stated(self.scene, embedded, mine, other["reading"], coarsest.get("reading"))
-        for left, name in ((other, "companion"), (coarsest, "coarsest companion")):
+        known = stated(self.scene, embedded, mine, other["reading"])
+        left = [(other, "companion")]
+        if self.enough is None or known[DEPTH] > self.enough:
+            coarsest = self._left(*self.runs[1])
+            if "gave up" in coarsest:
+                why = f"the coarsest companion run gave up: {coarsest['gave up']}"
+                summary["warnings"].append(f"{why}; the error of the mesh is taken as of first order")
+            known = stated(self.scene, embedded, mine, other["reading"], coarsest.get("reading"))
+            left.append((coarsest, "coarsest companion"))
+        summary["error estimates"] = known
+        for found, name in left:
             for cost, unit in COSTS:
-                if cost in left:
-                    summary[f"{cost} of the {name}{unit}"] = left[cost]
+                if cost in found:
+                    summary[f"{cost} of the {name}{unit}"] = found[cost]
+
+    def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
+        """Wait for what one of them leaves."""
+        while self.process is not None and self.process.is_alive() and left_by(scene, file) is None:
+            time.sleep(POLL)
+        return left_by(scene, file) or {"gave up": "it ended without a word"}
 
 
 def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:

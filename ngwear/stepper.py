@@ -116,17 +116,17 @@ class Stepper:
                 state.stage.scene = laid
                 break
             remesh(state)
-            self._settle_cycle(state, far=state.ledger.remeshes == 1)
+            self._settle_cycle(state)
             self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
-    def _settle_cycle(self, state: State, *, far: bool = False) -> None:
+    def _settle_cycle(self, state: State) -> None:
         """Solve each stroke of the cycle once, on the outline as it is."""
         state.reports = []
         for i, stroke in enumerate(self.scene.program.cycle):
             sliding = self._strokes(i, 0)
             wearing = Wearing.begin(state, i, sliding)
-            iterations = self._solve_phase(state, i, stroke, sliding, far=far)
+            iterations = self._solve_phase(state, i, stroke, sliding)
             wearing.look()
             state.reports.append(self._observe(state, i, iterations, sliding))
 
@@ -301,12 +301,10 @@ class Stepper:
         sliding: Strokes,
         *,
         plan: Plan = (),
-        far: bool = False,
     ) -> int:
         """Bring one stroke of the cycle to equilibrium, its wear over ``sliding`` implicit; return iterations.
 
         ``plan`` is the step's, for the memory.
-        ``far`` says that the last state comes from a much coarser mesh: it is then walked from, not tried first.
         """
         stage, phase = state.stage, state.phases[index]
         problem = stage.problem
@@ -328,7 +326,7 @@ class Stepper:
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
         work = Work()
         guesses = [before] if fresh else [before + repeats * phase.rate, before]
-        for guess in [] if far else guesses:
+        for guess in guesses:
             self._guess(state, guess)
             for term in problem.terms:
                 term.refresh()

@@ -40,9 +40,20 @@ def test_tolerances_go_along_with_the_elements_across():
     assert replace(half, order=3) == Accuracy(across=ALIKE / 2, order=3)
 
 
-def test_a_companion_has_fewer_elements_across():
-    fine = of(8.0)
-    assert scaled(fine, 2.0) == of(4.0)
+def test_elements_grow_faster_from_fewer_elements_across_unless_it_is_said_how():
+    gradings = [Accuracy(across=across).grading for across in (24, 12, 6, 2, 1)]
+    assert gradings == [0.25, 0.25, pytest.approx(0.33, abs=0.01), 0.5, 0.5]
+    assert Accuracy().grading == 0.25
+    assert Accuracy(across=6).given(Accuracy()).grading == 0.25
+    assert Accuracy().with_across(6) == Accuracy(across=6)
+    assert Accuracy(grading=0.3).with_across(6).grading == 0.3
+    assert Accuracy(error=0.01).with_across(2) == Accuracy(across=2)
+
+
+@pytest.mark.parametrize("across", [48.0, 16.0, 8.0, 2.0])
+def test_a_companion_has_fewer_elements_across(across):
+    fine = of(across)
+    assert scaled(fine, 2.0) == of(across / 2)
     assert scaled(scaled(fine, 2.0), 2.0) == scaled(fine, 4.0)
 
 

@@ -5,9 +5,9 @@ import pytest
 
 from ngwear import adaptive
 from ngwear.accuracy import Accuracy
-from ngwear.adaptive import ACROSS, LEVELS, STATED, at_level, first_across, next_across, run_to_error
+from ngwear.adaptive import ACROSS, LEVELS, at_level, first_across, next_across, run_to_error
 from ngwear.cli import main
-from ngwear.companion import COARSEST, FILE
+from ngwear.companion import COARSEST, DEPTH, FILE
 from ngwear.errors import ResultError, SceneError
 from ngwear.scene import Wear
 from ngwear.stepper import Stepper
@@ -26,7 +26,9 @@ def coarse_first(monkeypatch):
     monkeypatch.setattr(adaptive, "first_across", lambda error: 2.0)
 
 
-@pytest.mark.parametrize(("error", "across"), [(0.3, 4), (0.05, 4), (0.01, 8), (0.005, 16), (0.002, 32), (0.001, 32)])
+@pytest.mark.parametrize(
+    ("error", "across"), [(0.3, 2), (0.05, 2), (0.02, 4), (0.01, 8), (0.005, 16), (0.002, 32), (0.001, 32)]
+)
 def test_the_first_level_by_the_error(error, across):
     assert first_across(error) == across
 
@@ -55,17 +57,17 @@ def test_levels_are_run_until_one_states_less(tmp_path, coarse_first):
     levels = result.summary["levels"]
     assert len(levels) > 1
     assert [level[ACROSS] for level in levels] == sorted({level[ACROSS] for level in levels})
-    assert all(level[STATED] > ASKED for level in levels[:-1])
-    assert levels[-1][STATED] <= ASKED
+    assert all(level[DEPTH] > ASKED for level in levels[:-1])
+    assert levels[-1][DEPTH] <= ASKED
     assert result.summary["error asked for [-]"] == ASKED
-    assert result.summary["error estimates"][STATED] == levels[-1][STATED]
+    assert result.summary["error estimates"][DEPTH] == levels[-1][DEPTH]
     total = sum(level["CPU time [s]"] for level in levels)
     assert result.summary["CPU time of all levels [s]"] == pytest.approx(total, abs=1e-3)
     assert json.loads((tmp_path / "summary.json").read_text()) == result.summary
     assert (tmp_path / "history.png").exists()
     for level in levels[:-1]:
         earlier = tmp_path / LEVELS / f"{level[ACROSS]:g}"
-        assert json.loads((earlier / "summary.json").read_text())["error estimates"][STATED] == level[STATED]
+        assert json.loads((earlier / "summary.json").read_text())["error estimates"][DEPTH] == level[DEPTH]
     last, before = levels[-1][ACROSS], levels[-2][ACROSS]
     name = FILE if last == 2 * before else COARSEST
     told = json.loads((tmp_path / name).read_text())
@@ -101,7 +103,7 @@ def test_a_finest_level_that_is_not_enough_warns(tmp_path, monkeypatch):
     monkeypatch.setattr(adaptive, "MOST_ACROSS", 3.0)
     monkeypatch.setattr(adaptive, "first_across", lambda error: 3.0)
     summary = run_to_error(to(0.001), out=tmp_path).summary
-    assert summary["levels"][-1][STATED] > 0.001
+    assert summary["levels"][-1][DEPTH] > 0.001
     assert "0.001 was asked for" in summary["warnings"][-1]
 
 

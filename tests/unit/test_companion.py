@@ -1,11 +1,12 @@
 import json
+import shutil
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from ngwear import companion
-from ngwear.companion import COARSEST, FILE, PLACES, coarser, reading, run_stated, stated
+from ngwear.companion import COARSEST, DEPTH, FILE, PLACES, coarser, reading, run_stated, stated
 from ngwear.materials import PronySeries
 from ngwear.results import fingerprint
 from ngwear.seen_order import relative_errors
@@ -114,6 +115,20 @@ def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
     ]
     found = relative_errors(reading(result.recorder.rows), other["reading"])
     assert summary["error estimates"]["peak pressure [-]"] == pytest.approx(found["peak pressure [-]"])
+
+
+@pytest.mark.parametrize(("over", "needed"), [(1.01, False), (0.99, True)])
+def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finished, tmp_path, over, needed):
+    folder, result = finished
+    for name in (FILE, COARSEST):
+        shutil.copy(folder / name, tmp_path / name)
+    mine, other = reading(result.recorder.rows), json.loads((folder / FILE).read_text())["reading"]
+    errors = result.summary["error estimates"]
+    two = relative_errors(mine, other)[DEPTH] + errors["maximum depth by the wear steps alone [-]"]
+    summary = run_stated(scene("implicit"), out=tmp_path, enough=over * two, figures=False).summary
+    assert ("solves of the coarsest companion" in summary) is needed
+    assert summary["error estimates"][DEPTH] == pytest.approx(errors[DEPTH] if needed else two)
+    assert not any("companion" in warning for warning in summary["warnings"])
 
 
 def test_a_companion_that_has_ended_is_not_run_again(finished, monkeypatch):
