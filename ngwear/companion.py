@@ -164,7 +164,6 @@ def run_stated(
             progress=progress,
             throw=throw,
             figures=figures,
-            on_step=companions.begin,
             errors=state,
         )
 
@@ -176,10 +175,14 @@ class _Companions:
     """
 
     def __init__(self, scene: Scene, folder: Path, enough: float | None) -> None:
-        self.scene, self.enough, self.process, self.begun = scene, enough, None, False
+        self.scene, self.enough, self.process = scene, enough, None
         self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
 
     def __enter__(self) -> _Companions:
+        if any(left_by(*run) is None for run in self.runs):
+            with one_thread():
+                self.process = get_context("spawn").Process(target=_leave, args=(self.runs,), daemon=True)
+                self.process.start()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -187,19 +190,8 @@ class _Companions:
             self.process.terminate()
             self.process.join()
 
-    def begin(self, _: Any = None) -> None:
-        """Start them, once, unless all has been left."""
-        if self.begun:
-            return
-        self.begun = True
-        if any(left_by(*run) is None for run in self.runs):
-            with one_thread():
-                self.process = get_context("spawn").Process(target=_leave, args=(self.runs,), daemon=True)
-                self.process.start()
-
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Wait for them, and put the estimates into the summary of the run."""
-        self.begin()
         other = self._left(*self.runs[0])
         if "gave up" in other:
             why = f"the coarser companion run gave up: {other['gave up']}"
