@@ -118,8 +118,8 @@ class Wear:
     scheme : str
         ``"implicit"`` (backward Euler inside the contact law, stable for every step) or ``"explicit"``.
     step : str
-        ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"fixed"``: always ``max_jump``;
-        ``"each"``: every stroke.
+        ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"fixed"``: ``max_jump``, fewer where so
+        many fail; ``"each"``: every stroke.
     max_jump : int
         Most cycles at once.
     remesh : str

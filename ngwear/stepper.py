@@ -36,6 +36,7 @@ log = logging.getLogger(__name__)
 
 FIRST = 0.01  # of the program's cycles: the first step
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
+HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
 MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
 
 
@@ -165,13 +166,13 @@ class Stepper:
         ConvergenceError, GeometryError, MeshError
             When a single cycle fails; the state is the last accepted one.
         """
-        program = self.scene.program
+        program, most = self.scene.program, math.inf
         while True:
             goal = min([m for m in self.scene.save.strokes if m > state.strokes] + [program.strokes])
             left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
             wear = self.scene.wear
             cycles = {"each": 1, "fixed": min(wear.max_jump, left), "jump": state.control.share(left)}[wear.step]
-            cycles = steady_cycles(self.scene, state.strokes, cycles)
+            cycles = steady_cycles(self.scene, state.strokes, min(cycles, most))
             saved = self._save(state)
             try:
                 ratio = self._step(state, cycles)
@@ -181,12 +182,12 @@ class Stepper:
                 if cycles == 1:
                     raise
                 log.info("step of %d cycles failed (%s); trying half", cycles, error)
-                state.control.cut(cycles)
+                most = state.control.cut(cycles)
                 continue
             if self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles):
                 self._restore(state, saved)
                 state.work.retries += 1
-                state.control.cut(cycles)
+                most = state.control.cut(cycles)
                 continue
             state.control.update(ratio, cycles)
             if state.strokes in (*self.scene.save.strokes, program.strokes):
@@ -333,7 +334,7 @@ class Stepper:
             if settle(problem, StepOptions(), work).converged:
                 break
         else:
-            self._approach(state, index, stroke, work)
+            self._approach(state, index, stroke, work, jumps=repeats > 1)
         state.work.add(work)
         rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
         shares = stage.shares(stroke)
@@ -369,15 +370,19 @@ class Stepper:
             loaded={} if self._losses is None else self._losses.loaded(stage),
         )
 
-    def _approach(self, state: State, index: int, stroke: Stroke, work: Work) -> None:
-        """Reach a stroke's equilibrium in steps: from its last state, else from the stroke before it in the cycle."""
+    def _approach(self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool) -> None:
+        """Reach a stroke's equilibrium in steps: from its last state, else from the stroke before it in the cycle.
+
+        Where the stroke stands for several, hard ways are left early: fewer strokes at once are easier.
+        """
         stage, cycle = state.stage, self.scene.program.cycle
+        options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
         self._guess(state, state.phases[index].vector)
         if not stage.remembers or self.scene.deactivation is not None:
             try:
-                work.add(relax(problem, StepOptions(first=0.25)))
+                work.add(relax(problem, options))
                 return
             except ConvergenceError as error:
                 log.info("%s: trying from the stroke before", error)
@@ -385,7 +390,7 @@ class Stepper:
         problem.set_loads(stage.stroke_loads(cycle[index - 1]))
         stage.begin(vector)
         try:
-            work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.25)))
+            work.add(advance(problem, stage.stroke_loads(stroke), options))
         except ConvergenceError as error:
             raise ConvergenceError(
                 f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report

@@ -57,6 +57,7 @@ class JumpControl:
             factor = min(GROWTH, max(0.3, SAFETY * math.sqrt(self.tolerance / ratio)))
         self.cycles = int(min(self.longest, max(1, math.floor(factor * cycles + 1e-9))))
 
-    def cut(self, cycles: int) -> None:
-        """Halve the step after a failure."""
+    def cut(self, cycles: int) -> int:
+        """Halve the step after a failure; return the cycles of the next one."""
         self.cycles = max(1, cycles // 2)
+        return self.cycles

@@ -15,7 +15,9 @@ from dataclasses import replace
 
 import pytest
 
+from ngwear import stepper
 from ngwear.cli import main
+from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError, SceneError
 from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.results import Folder
@@ -557,3 +559,37 @@ def test_jumps_of_a_fixed_length(sheet):
     wear = replace(sheet.wear, step="fixed", max_jump=3)
     result = run(replace(sheet, wear=wear, program=replace(sheet.program, strokes=7)), figures=False)
     assert [row["strokes in one solve [-]"] for row in result.recorder.rows] == [0, 3, 3, 1]
+
+
+def test_a_jump_of_a_fixed_length_that_fails_is_halved(sheet, monkeypatch):
+    """Whatever takes more than two strokes at once fails."""
+    real = Stepper._step
+
+    def step(self, state, cycles):
+        if cycles > 2:
+            raise ConvergenceError("no equilibrium")
+        return real(self, state, cycles)
+
+    monkeypatch.setattr(Stepper, "_step", step)
+    wear = replace(sheet.wear, step="fixed", max_jump=4)
+    result = run(replace(sheet, wear=wear, program=replace(sheet.program, strokes=5)), figures=False)
+    assert [row["strokes in one solve [-]"] for row in result.recorder.rows] == [0, 2, 1, 2]
+    assert result.summary["retries"] >= 2
+
+
+@pytest.mark.parametrize(("most", "hardest"), [(1, 1 / 512), (4, 1 / 16)])
+def test_hard_ways_are_for_single_strokes(sheet, monkeypatch, most, hardest):
+    """A jump is cut instead."""
+    walks, real = [], stepper.relax
+    monkeypatch.setattr(stepper, "settle", lambda *_: Report(Outcome.STALLED))
+
+    def relax(problem, options):
+        walks.append(options.smallest)
+        return real(problem, options)
+
+    monkeypatch.setattr(stepper, "relax", relax)
+    wear = replace(sheet.wear, step="fixed", max_jump=most)
+    scene = replace(sheet, wear=wear, program=replace(sheet.program, strokes=4))
+    hand = Stepper(scene)
+    hand.advance(hand.start())
+    assert walks[-1] == hardest
