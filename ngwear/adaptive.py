@@ -33,8 +33,8 @@ ACROSS, CPU = "elements across [-]", "CPU time [s]"
 
 
 def first_across(error: float) -> float:
-    """Elements across the contacts to begin with: between 2 and 32, twice as many for half the error."""
-    return min(max(FIRST * 2.0 ** round(math.log2(AT / error)), COARSEST_FIRST), FINEST_FIRST)
+    """Elements across the contacts to begin with: between 2 and 32, a power of 2, twice as many for half the error."""
+    return min(max(FIRST * 2.0 ** math.ceil(math.log2(AT / error) - 1e-9), COARSEST_FIRST), FINEST_FIRST)
 
 
 def next_across(across: float, stated: float | None, error: float) -> float | None:
