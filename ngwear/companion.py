@@ -11,7 +11,10 @@ mean square.
 The estimate cannot see what all three share: the outline's points, the laws and their constants, and steps that the
 scene prescribes (``wear.step`` other than ``"jump"``). Two of these are known separately; they are stated by their
 names and added: arms of the memory that are folded away err by a bounded share of the stress, and prescribed steps by
-what the embedded estimate says of depth and area. Time has no steps: strokes integrate the arms exactly.
+what the embedded estimate says of depth and area. What friction tears out is no matter of convergence: elements of half
+the side tear nearly twice as much (``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is
+torn, and comes loose by it, counts as error of the area lost in all. Time has no steps: strokes integrate the arms
+exactly.
 """
 
 from __future__ import annotations
@@ -29,7 +32,7 @@ import numpy as np
 
 from ngwear.accuracy import LEAST_ACROSS
 from ngwear.errors import NgwearError
-from ngwear.results import Recorder, fingerprint
+from ngwear.results import TORN, Recorder, fingerprint
 from ngwear.run import Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
@@ -38,11 +41,11 @@ from ngwear.sweep import end_with_parent, one_thread
 
 COARSER = 2.0
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
-DEPTH = "maximum depth [-]"
+DEPTH, LOST = "maximum depth [-]", "area lost in all [-]"
 WHOLE = {
     DEPTH: "maximum depth [mm]",
     "worn area [-]": "area removed from the outline [mm^2]",
-    "area lost in all [-]": "area lost in all [mm^2]",  # where elements are lost
+    LOST: "area lost in all [mm^2]",  # where elements are lost
 }
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
@@ -123,6 +126,8 @@ def stated(
     prescribed = {} if scene.wear.step == "jump" else steps
     for name, error in levels.items():
         out[name] = error + folded + prescribed.get(name, 0.0)
+    if LOST in levels:
+        out[LOST] += embedded.get(TORN, 0.0)
     both = "mesh" if prescribed else "mesh and wear steps"
     out |= {f"{name[:-4]} by {both} [-]": error for name, error in levels.items()}
     out |= {f"{name[:-4]} by the wear steps alone [-]": error for name, error in steps.items()}

@@ -34,6 +34,7 @@ def fingerprint(scene: Scene) -> str:
 
 POINTS_ALONG = 200  # on a straight worn edge as long as the section: where depth is measured
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
+TORN = "area lost in all by tearing [-]"  # what of its error is known separately
 BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
 
 
@@ -224,7 +225,9 @@ class Recorder:
             "ngwear": __version__,
         }
         if scene.deactivation is not None and scene.deactivation.damage is not None:
+            torn = sum(out[f"area lost by {cause} [mm^2]"] for cause in ("tearing", "coming loose"))
             out["error estimates"]["tearing too late [cycles]"] = ledger.late
+            out["error estimates"][TORN] = torn / max(out["area lost in all [mm^2]"], 1e-300)
         return out
 
     def _warnings(self) -> list[str]:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from ngwear import companion
-from ngwear.companion import COARSEST, DEPTH, FILE, PLACES, coarser, reading, run_stated, stated
+from ngwear.companion import COARSEST, DEPTH, FILE, LOST, PLACES, coarser, reading, run_stated, stated
 from ngwear.materials import PronySeries
-from ngwear.results import fingerprint
+from ngwear.results import TORN, fingerprint
 from ngwear.seen_order import relative_errors
 from ngwear.verify.no_loss import scene
 
@@ -101,6 +101,14 @@ def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
     assert each["maximum depth [-]"] == pytest.approx(0.04 + bound + 0.02)
     assert each["peak pressure [-]"] == pytest.approx(0.04 + bound)
     assert each["maximum depth by mesh [-]"] == pytest.approx(0.04)
+
+
+def test_all_that_is_torn_counts_as_error_of_the_area_lost():
+    mine, other = ({LOST: {"a": [a]}, DEPTH: {"d": [1.0]}} for a in (1.0, 1.04))
+    found = stated(scene("implicit"), {TORN: 0.1}, mine, other)
+    assert found[LOST] == pytest.approx(0.04 + 0.1)
+    assert found["area lost in all by mesh and wear steps [-]"] == pytest.approx(0.04)
+    assert found[DEPTH] == 0.0
 
 
 def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
