@@ -177,16 +177,13 @@ class Stepper:
             try:
                 ratio = self._step(state, cycles)
             except (ConvergenceError, GeometryError, MeshError) as error:
-                self._restore(state, saved)
-                state.work.retries += 1
                 if cycles == 1:
+                    self._restore(state, saved)
                     raise
                 log.info("step of %d cycles failed (%s); trying half", cycles, error)
-                most = state.control.cut(cycles)
-                continue
-            if self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles):
+                ratio = math.inf
+            if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
                 self._restore(state, saved)
-                state.work.retries += 1
                 most = state.control.cut(cycles)
                 continue
             state.control.update(ratio, cycles)
@@ -229,6 +226,8 @@ class Stepper:
         }
 
     def _restore(self, state: State, saved: dict[str, Any]) -> None:
+        """Take a step back, and count it as tried."""
+        state.work.retries += 1
         contour = saved.pop("contour")
         state.__dict__.update(saved)
         state.stage.body.move_to(contour)

@@ -18,7 +18,7 @@ four times as coarse has ten elements across the contact. The seal's depth (4.0)
 that remembers (3.2, 3.1): they scatter from mesh to mesh. Friction and contact area of the pin at 3 mm/s (7.6 and 7.7):
 its meshes differ by 1 %, those of the next pair by 0.2 %. A third, coarser one shows no higher order.
 
-Takes twenty minutes.
+Takes twenty-five minutes.
 """
 
 from __future__ import annotations

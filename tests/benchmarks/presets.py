@@ -45,7 +45,7 @@ def main(scenes):
     sys.stdout.write("scene, preset, elements across: error of depth, area, peak [%]; CPU s, wall s, MB; solves\n")
     for name in scenes:
         finest = max(PRESETS.values())
-        found = {across: measure(__file__, across, name) for across in (*PRESETS.values(), finest / 2)}
+        found = {across: measure(__file__, across, name) for across in {*PRESETS.values(), finest / 2}}
         for preset, across in PRESETS.items():
             mine, other = found[across], found[finest if across < finest else finest / 2]
             off = ", ".join(f"{100 * abs(mine[q] / other[q] - 1):.2f}" for q in QUANTITIES)

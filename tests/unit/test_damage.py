@@ -253,12 +253,11 @@ def test_jumps_tear_what_single_cycles_tear():
     assert found[1][1] < found[0][1] == 8
 
 
-def test_in_a_jump_an_element_is_torn_at_most_one_hundredth_of_the_program_too_late():
+@pytest.mark.parametrize("wear", [Wear(step="jump", remesh="never"), Wear(step="fixed", max_jump=50, remesh="never")])
+def test_in_a_jump_an_element_is_torn_at_most_one_hundredth_of_the_program_too_late(wear):
     """Hardly any wear: what a cycle uses up of the most strained element stays as it is."""
     usage, cycles = 1 / 210.5, 400
-    tiring = replace(
-        scene("implicit", damage=Fatigue(critical=1.0, exponent=2.0)), wear=Wear(step="jump", remesh="never")
-    )
+    tiring = replace(scene("implicit", damage=Fatigue(critical=1.0, exponent=2.0)), wear=wear)
     (spec,) = tiring.contacts
     tiring = replace(tiring, contacts=(replace(spec, specific_wear_rate=1e-9),))
     once = Stepper(replace(tiring, program=replace(tiring.program, strokes=2)))
