@@ -132,5 +132,4 @@ def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:
     contour = scene.contour
     t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])
     places = contour.at(t)
-    gap = [float(spec.surface.gap(x, y)) for x, y in places]
-    return places[[int(np.argmin(gap))]]
+    return places[[int(np.argmin(spec.surface.gap(*places.T)))]]

@@ -195,7 +195,7 @@ class Stage:
         contour = self.body.contour
         mine = contour.on(spec.edges)
         touching = mine | np.roll(mine, 1)
-        gap = np.array([float(spec.surface.gap(x, y)) for x, y in contour.points[touching]])
+        gap = spec.surface.gap(*contour.points[touching].T)
         worst = int(np.argmin(gap))
         return float(gap[worst]), int(np.flatnonzero(touching)[worst])
 
@@ -204,13 +204,13 @@ class Stage:
         ax, ay = spec.surface.approach
         contour = self.body.contour
         mine = contour.on(spec.edges)
-        points = contour.points[mine | np.roll(mine, 1)]
+        x, y = contour.points[mine | np.roll(mine, 1)].T
 
         def smallest(travel: float) -> float:
-            return min(float(spec.surface.gap(x - travel * ax, y - travel * ay)) for x, y in points)
+            return float(spec.surface.gap(x - travel * ax, y - travel * ay).min())
 
         # Enough to press on the mesh edges beside the nearest point; another ridge may be as high.
-        here = np.array([float(spec.surface.gap(x, y)) for x, y in points])
+        here = spec.surface.gap(x, y)
         first = int(here.argmin())
         beside = here[max(first - 1, 0) : first + 2]
         bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.mounting)
@@ -233,11 +233,11 @@ class Stage:
         ax, ay = spec.surface.approach
         contour = self.body.contour
         mine = contour.on(spec.edges)
-        points = contour.points[mine | np.roll(mine, 1)]
+        x, y = contour.points[mine | np.roll(mine, 1)].T
         low, high = 0.0, float(np.ptp(contour.points, axis=0).max())
 
         def smallest(retreat: float) -> float:
-            return min(float(spec.surface.gap(x + retreat * ax, y + retreat * ay)) for x, y in points)
+            return float(spec.surface.gap(x + retreat * ax, y + retreat * ay).min())
 
         if smallest(high) < 0:
             raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "cannot be drawn back from the part")

@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT, Unknowns
-from ngwear.effects.contact_profile import ContactProfile, nodes
+from ngwear.effects.contact_profile import ContactProfile, EdgeNodes, nodal_pressure
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
 from ngwear.surfaces import RigidSurface, WornProfile
 
 Array = NDArray[np.float64]
@@ -98,6 +99,8 @@ class Contact(UnilateralContact):
         """Mapped points at both ends and in the middle of each mesh edge in contact, in the order of the outline."""
         line = body.outline
         self.positions = line.on(self.edges)
+        self.nodes = EdgeNodes.on(body, self.positions)
+        self._measured: tuple[Contour, Array] | None = None
         points = body.mesh.MapToAllElements(ENDS, region)
         row = {int(nr): k for k, nr in enumerate(points["nr"][::2])}
         rows = np.array([row[int(nr)] for nr in line.element[self.positions]])
@@ -118,14 +121,27 @@ class Contact(UnilateralContact):
         u = self._state[DISPLACEMENT]
         stretch = self._kinematics.area_stretch(u, ng.Grad(u))
         return ContactProfile.from_samples(
-            self._body,
-            self.positions,
+            self.nodes,
+            self._body.contour,
+            self._lengths(),
             pressure=self.end_pressures(),
             stretch=self._sample(stretch),
             place=np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1),
             gap=self._sample(self.gap(self._state)),
             nodal=self.order == 1,
         )
+
+    def nodal_pressure(self) -> Array:
+        """Nominal pressure at the nodes of ``profile`` [MPa]."""
+        nominal, _, _ = nodal_pressure(self.nodes, self._lengths(), self.end_pressures(), nodal=self.order == 1)
+        return nominal
+
+    def _lengths(self) -> Array:
+        """Lengths of the mesh edges on the outline where it is now [mm]."""
+        if self._measured is None or self._measured[0] is not self._body.contour:
+            ends = self._body.outline.t[self.positions]
+            self._measured = self._body.contour, self._body.contour.arc_lengths(*ends.T)
+        return self._measured[1]
 
     def peak(self) -> float:
         return float(self.profile().pressure.max(initial=0.0))
@@ -142,8 +158,7 @@ class Contact(UnilateralContact):
         axisymmetry per circumference there.
         """
         profile, ends = self.profile(), self.along()
-        line = self._body.outline.t[self.positions]
-        stretch = np.abs(np.diff(ends, axis=1)) / self._body.contour.arc_lengths(*line.T)[:, None]
+        stretch = np.abs(np.diff(ends, axis=1)) / self._lengths()[:, None]
         pressure = profile.load / profile.weight
         if self._kinematics.axisymmetric:
             pressure = pressure * profile.reference[:, 1] / profile.place[:, 1]
@@ -186,7 +201,7 @@ class Contact(UnilateralContact):
 
     def from_points(self, values: Array) -> Array:
         """Values at the outline's points, linear between them, at the nodes of ``profile``."""
-        return ContactProfile.average(self._body, self.positions, self._along_outline(values))
+        return self.nodes.average(self._along_outline(values))
 
     def _along_outline(self, values: Array) -> Array:
         ends = self._body.outline.t[self.positions]
@@ -208,12 +223,11 @@ class Contact(UnilateralContact):
     def set_share(self, values: Array | float) -> None:
         """Give ``share`` its values at the nodes of ``profile``."""
         vertices = self._body.outline.vertices[self.positions]
-        _, node = nodes(self._body, self.positions)
-        self.share.vec.FV().NumPy()[vertices] = np.broadcast_to(values, node.max() + 1)[node]
+        self.share.vec.FV().NumPy()[vertices] = np.broadcast_to(values, len(self.nodes.t))[self.nodes.of_edges]
 
     def at_nodes(self, field: ng.CoefficientFunction) -> Array:
         """Values of a field at the nodes of ``profile``, averaged over the edges that meet there."""
-        return ContactProfile.average(self._body, self.positions, self._sample(field))
+        return self.nodes.average(self._sample(field))
 
     def edges_to_nodes(self, values: Array) -> Array:
         """Slip of the mesh edges at the nodes of ``profile``: harmonic means of the edges that meet there.
@@ -222,7 +236,7 @@ class Contact(UnilateralContact):
         the stick zone vanish edge by edge.
         """
         resistance = 1 / np.maximum(np.column_stack([values, values]), 1e-300)
-        return 1 / ContactProfile.average(self._body, self.positions, resistance)
+        return 1 / self.nodes.average(resistance)
 
     def least_stretch(self) -> tuple[float, Array]:
         """Least stretch da/dA of the named edges, and the reference place of that mesh edge's middle [mm]."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.geometry.body import Body
+from ngwear.geometry.contour import Contour
 
 Array = NDArray[np.float64]
 
@@ -33,6 +35,42 @@ class Zone:
     peak: float
     width: float
     nodes: slice
+
+
+@dataclass(frozen=True)
+class EdgeNodes:
+    """The nodes of mesh edges along an outline.
+
+    Attributes
+    ----------
+    t : array, shape (k,)
+        Contour parameter of each node, ascending.
+    of_edges : array of int, shape (m, 2)
+        The two nodes of each mesh edge.
+    """
+
+    t: Array
+    of_edges: NDArray[np.intp]
+
+    @classmethod
+    def on(cls, body: Body, positions: NDArray[np.intp]) -> EdgeNodes:
+        """Of the mesh edges at these positions of the body's outline."""
+        ends = np.round(body.outline.t[positions] % len(body.base), 9)
+        t, node = np.unique(ends, return_inverse=True)
+        return cls(t, node.reshape(ends.shape))
+
+    @cached_property
+    def meeting(self) -> NDArray[np.intp]:
+        """How many mesh edges meet at each node, shape (k,)."""
+        return np.bincount(self.of_edges.ravel(), minlength=len(self.t))
+
+    def total(self, samples: Array) -> Array:
+        """Sum at each node of samples at the ends of the mesh edges, shape (m, 2)."""
+        return np.bincount(self.of_edges.ravel(), samples.ravel(), len(self.t))
+
+    def average(self, samples: Array) -> Array:
+        """Mean at each node of samples at the ends of the mesh edges, shape (m, 2)."""
+        return self.total(samples) / self.meeting
 
 
 @dataclass(frozen=True)
@@ -75,8 +113,9 @@ class ContactProfile:
     @classmethod
     def from_samples(
         cls,
-        body: Body,
-        positions: NDArray[np.intp],
+        nodes: EdgeNodes,
+        contour: Contour,
+        lengths: Array,
         *,
         pressure: Array,
         stretch: Array,
@@ -84,42 +123,22 @@ class ContactProfile:
         gap: Array,
         nodal: bool = False,
     ) -> ContactProfile:
-        """Build from samples at both ends of each mesh edge; ``place`` of shape (m, 2, 2), the others (m, 2).
+        """Build from lengths of the mesh edges, shape (m,) [mm], and samples at both ends of each.
 
-        A pressure that is ``nodal`` already stays as it is; smeared, the contact would be an edge wider.
+        The samples are of shape (m, 2), ``place`` of shape (m, 2, 2); ``nodal`` as of ``nodal_pressure``.
         """
-        t, node = nodes(body, positions)
-        ends = body.outline.t[positions]
-        length = body.contour.arc_lengths(ends[:, 0], ends[:, 1])
-        first, second = pressure.T
-        share = np.stack([2 * first + second, first + 2 * second], axis=1) * length[:, None] / 6
-        if nodal:
-            share = pressure * length[:, None] / 2
-        weight = np.bincount(node.ravel(), np.repeat(length / 2, 2), len(t))
-        load = np.bincount(node.ravel(), share.ravel(), len(t))
-        load = np.where(load > 1e-9 * load.max(initial=0.0), load, 0.0)
-        nominal = load / weight
-        if not nodal:
-            nominal -= _grading_bias(node, length, pressure.mean(axis=1), len(t))
-        nominal = np.maximum(nominal, 0.0)
-        nominal[load <= 0] = 0.0
+        nominal, load, weight = nodal_pressure(nodes, lengths, pressure, nodal=nodal)
         return cls(
-            t=t,
-            reference=body.contour.at(t),
-            place=np.stack([cls.average(body, positions, place[..., k]) for k in range(2)], axis=1),
+            t=nodes.t,
+            reference=contour.at(nodes.t),
+            place=np.stack([nodes.average(place[..., k]) for k in range(2)], axis=1),
             nominal_pressure=nominal,
-            pressure=nominal / cls.average(body, positions, stretch),
-            gap=cls.average(body, positions, gap),
+            pressure=nominal / nodes.average(stretch),
+            gap=nodes.average(gap),
             weight=weight,
             load=load,
-            edges=node,
+            edges=nodes.of_edges,
         )
-
-    @staticmethod
-    def average(body: Body, positions: NDArray[np.intp], samples: Array) -> Array:
-        """Mean at each node of samples at the ends of the mesh edges, shape (m, 2)."""
-        t, node = nodes(body, positions)
-        return np.bincount(node.ravel(), samples.ravel(), len(t)) / np.bincount(node.ravel(), minlength=len(t))
 
     def zones(self, *, threshold: float = 1e-3) -> list[Zone]:
         """Connected pieces where the pressure exceeds ``threshold`` times its maximum."""
@@ -162,20 +181,34 @@ class ContactProfile:
         return self.place[node] + fraction * (self.place[first] - self.place[node])
 
 
-def _grading_bias(node: NDArray[np.intp], length: Array, mean: Array, n: int) -> Array:
+def nodal_pressure(
+    nodes: EdgeNodes, lengths: Array, pressure: Array, *, nodal: bool = False
+) -> tuple[Array, Array, Array]:
+    """Nominal pressure, load and weight of each node (see ``ContactProfile``) from the pressures at the edges' ends.
+
+    A pressure that is ``nodal`` already stays as it is; smeared, the contact would be an edge wider.
+    """
+    first, second = pressure.T
+    share = np.stack([2 * first + second, first + 2 * second], axis=1) * lengths[:, None] / 6
+    if nodal:
+        share = pressure * lengths[:, None] / 2
+    weight = nodes.total(np.repeat(lengths / 2, 2))
+    load = nodes.total(share)
+    load = np.where(load > 1e-9 * load.max(initial=0.0), load, 0.0)
+    nominal = load / weight
+    if not nodal:
+        nominal -= _grading_bias(nodes, lengths, weight, pressure.mean(axis=1))
+    nominal = np.maximum(nominal, 0.0)
+    nominal[load <= 0] = 0.0
+    return nominal, load, weight
+
+
+def _grading_bias(nodes: EdgeNodes, lengths: Array, apart: Array, mean: Array) -> Array:
     """What lumping adds to a pressure of slope s between edges of lengths a and b, ``s (b - a) / 3``."""
-    before, after = node[:, 1], node[:, 0]  # the node that ends an edge has it before itself
+    after, before = nodes.of_edges.T  # the node that ends an edge has it before itself
+    n = len(nodes.t)
 
     def jump(values: Array) -> Array:
         return np.bincount(after, values, n) - np.bincount(before, values, n)
 
-    inner = np.bincount(node.ravel(), minlength=n) == 2
-    apart = np.bincount(node.ravel(), np.repeat(length / 2, 2), n)
-    return np.where(inner, jump(mean) / apart * jump(length) / 3, 0.0)
-
-
-def nodes(body: Body, positions: NDArray[np.intp]) -> tuple[Array, NDArray[np.intp]]:
-    """Contour parameters of the nodes, ascending, and the node at both ends of each mesh edge, shape (m, 2)."""
-    ends = np.round(body.outline.t[positions] % len(body.base), 9)
-    t, node = np.unique(ends, return_inverse=True)
-    return t, node.reshape(ends.shape)
+    return np.where(nodes.meeting == 2, jump(mean) / apart * jump(lengths) / 3, 0.0)

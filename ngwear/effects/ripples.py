@@ -9,7 +9,6 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
 from ngwear.effects.contact import Contact
-from ngwear.effects.contact_profile import ContactProfile
 
 SHIFT = 0.25  # of a mesh edge
 TOUCHING = 1e-2  # of the highest pressure: what is reckoned as contact
@@ -54,14 +53,12 @@ class Ripples:
 
     def gather(self) -> None:
         """Take P_s from the present state."""
-        profile, body, positions = self._contact.profile(), self._unknowns.body, self._contact.positions
+        nodes, nodal = self._contact.nodes, self._contact.nodal_pressure()
 
         def averaged(nodal: Array) -> Array:
-            middles = nodal[profile.edges].mean(axis=1)
-            return ContactProfile.average(body, positions, np.stack([middles, middles], axis=1))
+            return nodes.average(np.repeat(nodal[nodes.of_edges].mean(axis=1), 2))
 
-        nodal = profile.nominal_pressure
-        smooth = self._contact.pressure_vector(averaged(2 * nodal - averaged(nodal))[profile.edges])
+        smooth = self._contact.pressure_vector(averaged(2 * nodal - averaged(nodal))[nodes.of_edges])
         self._smooth.vec.FV().NumPy()[:] = smooth
 
     def margin(self, mu: ng.CoefficientFunction) -> float:

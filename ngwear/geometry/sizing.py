@@ -39,7 +39,9 @@ class SizeField:
         points = np.atleast_2d(points)
         h = np.full(len(points), self.coarse)
         if len(self.seeds):
-            distance = np.linalg.norm(points[:, None] - self.seeds[None], axis=2)
+            from scipy.spatial.distance import cdist
+
+            distance = cdist(points, self.seeds)
             h = np.minimum(h, (self.sizes + self.grading * distance).min(axis=1))
         return h
 
