@@ -41,7 +41,8 @@ class Accuracy:
         Error indicator of the stresses over the energy norm, up to which elements outside the contacts stay
         coarse [-]; 0.05 unless given.
     wear_error : float or None
-        Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side. 0.02 unless given.
+        Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side. Laws of friction
+        and wear may change by five times as much in a jump (``ngwear.drift``). 0.02 unless given.
     longest_jump : float or None
         Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given. Where pressures change
         slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err

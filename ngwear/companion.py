@@ -13,8 +13,8 @@ scene prescribes (``wear.step`` other than ``"jump"``). Two of these are known s
 names and added: arms of the memory that are folded away err by a bounded share of the stress, and prescribed steps by
 what the embedded estimate says of depth and area. What friction tears out is no matter of convergence: elements of half
 the side tear nearly twice as much (``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is
-torn, and comes loose by it, counts as error of the area lost in all. Time has no steps: strokes integrate the arms
-exactly.
+torn, and comes loose by it, counts as error of the area lost in all; and, as a share of that area, of the depth, which
+is the area over the width that wears. Time has no steps: strokes integrate the arms exactly.
 """
 
 from __future__ import annotations
@@ -126,8 +126,9 @@ def stated(
     prescribed = {} if scene.wear.step == "jump" else steps
     for name, error in levels.items():
         out[name] = error + folded + prescribed.get(name, 0.0)
-    if LOST in levels:
-        out[LOST] += embedded.get(TORN, 0.0)
+    for name in (LOST, DEPTH):
+        if name in levels:
+            out[name] += embedded.get(TORN, 0.0)
     both = "mesh" if prescribed else "mesh and wear steps"
     out |= {f"{name[:-4]} by {both} [-]": error for name, error in levels.items()}
     out |= {f"{name[:-4]} by the wear steps alone [-]": error for name, error in steps.items()}

@@ -7,16 +7,17 @@ from collections.abc import Iterator
 from ngwear.laws import Curve
 from ngwear.scene import ContactSpec, Scene
 
-LARGEST_CHANGE = 0.1  # of a law in a jump, over its highest value in the scene
-LARGEST_LAG = 0.01  # of the friction that a jump uses behind its mean over the jump
+CHANGE, MOST_CHANGE = 5.0, 0.5  # times the wear error: of a law in a jump, over its highest value in the scene
+LAG = 0.5  # times the wear error: of the friction that a jump uses behind its mean over the jump
 
 
 def steady_cycles(scene: Scene, done: int, most: int) -> int:
     """Cycles, from one to ``most``, that a step after ``done`` strokes may take.
 
-    In a step of several cycles no law may change by more than a tenth of its highest value in the scene, and friction,
-    which is taken from the middle of the step, may miss its mean by no more than a hundredth. So a jump passes over no
-    phase of a law unseen, and hardly over a bend, whatever the error of the worn area allows.
+    In a step of several cycles no law may change by more than five times ``Accuracy.wear_error`` of its highest value
+    in the scene, nor by more than half of that; and friction, which is taken from the middle of the step, may miss its
+    mean by no more than half the wear error. So a jump passes over no phase of a law unseen, and hardly over a bend,
+    whatever the error of the worn area allows; and a run with longer jumps shows what that errs by.
     """
     start, kinds = scene.program.slid(done), len(scene.program.cycle)
     allowed, refused = 1, most + 1
@@ -37,16 +38,16 @@ def friction_range(scene: Scene, contact: ContactSpec) -> tuple[float, float]:
 
 
 def _is_steady(scene: Scene, start: float, end: float) -> bool:
-    last = scene.program.slid(scene.program.strokes)
+    last, error = scene.program.slid(scene.program.strokes), scene.accuracy.wear_error
     for contact in scene.contacts:
         friction = list(_friction(scene, contact))
         for curve in (*friction, contact.wear_rate.curve):
             low, high = curve.extremes(start, end)
-            if high - low > LARGEST_CHANGE * curve.extremes(0.0, last)[1]:
+            if high - low > min(CHANGE * error, MOST_CHANGE) * curve.extremes(0.0, last)[1]:
                 return False
         for curve in friction:
             mean = curve.mean(start, end)
-            if abs(curve.value(0.5 * (start + end)) - mean) > LARGEST_LAG * mean:
+            if abs(curve.value(0.5 * (start + end)) - mean) > LAG * error * mean:
                 return False
     return True
 

@@ -6,19 +6,20 @@ way, the ratio of their lengths tells p, and what is left is (Richardson)
 
     |q1 - q| = |q1 - q2| / (r^p - 1).
 
-p is kept between 0.7 and 2. A ratio near 1 would promise any error; and a last difference that is small by chance must
-not promise more than second order, which is about what the contacts' free ends leave of quadratic elements.
+p is kept between 1 and 3/2. At the free end of a contact pressures fall as a square root, and the strains of quadratic
+elements converge with 3/2 there; what seems to converge faster comes from levels too coarse for their ratio to be
+believed, or from chance, and a ratio near 1 would promise any error.
 
-Readings whose differences point against each other, or grow, show no order. They lie about a trend by where a mesh
+Readings whose differences point against each other, or grow, show no order. They lie about their limit by where a mesh
 happens to put its nodes, as the highest nodal pressure or the end of a contact does, by an amount that falls with the
 element edge: q_i = q + s h_i N(0, 1). The weights 1/h_i² give the best q, and what the readings differ from it gives s
-without bias. What of the last difference is more than scatter explains is the trend, taken as of first order:
+without bias. Where differences grow, what of the last is more than scatter explains counts as a trend, of first order:
 
     q = sum q_i / h_i² / sum 1 / h_i²,                s² = sum |q_i - q|² / h_i² / (n - 1),
     t² = (|q1 - q2|² - (1 + r²) s²) / (r - 1)² >= 0,  |q1 - q|² = t² + s².
 
 The last difference alone would be 2.2 s where there is nothing but scatter, most of it the coarser run's. Two runs tell
-neither an order nor scatter: the first order is taken.
+neither an order nor scatter: the order is told, or taken as the first.
 """
 
 from __future__ import annotations
@@ -29,7 +30,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-LOWEST, HIGHEST = 0.7, 2.0  # order of convergence
+LOWEST, HIGHEST = 1.0, 1.5  # order of convergence
 Reading = Mapping[str, Mapping[str, ArrayLike]]
 
 
@@ -42,7 +43,7 @@ def order_seen(fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike, *, ratio
 
 
 def error_of_finest(
-    fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike | None = None, *, ratio: float = 2.0
+    fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike | None = None, *, ratio: float = 2.0, order: float = 1.0
 ) -> float:
     """Error of the reading ``fine``, in the mean square of its places.
 
@@ -54,38 +55,49 @@ def error_of_finest(
         Of one ``ratio²`` times as coarse; None if there is none.
     ratio : float
         > 1.
+    order : float
+        Of convergence; three runs tell it themselves.
 
     Examples
     --------
-    >>> round(error_of_finest(1.01, 1.04, 1.16), 9)  # second order: the limit is 1
+    >>> round(error_of_finest(1.01, 1.02, 1.04), 9)  # first order: the limit is 1
     0.01
     """
-    last = _square(np.subtract(fine, coarse))
-    if coarsest is None:
-        return math.sqrt(last) / (ratio - 1)
-    order = order_seen(fine, coarse, coarsest, ratio=ratio)
-    if order is not None:
-        return math.sqrt(last) / (ratio**order - 1)
+    last = np.subtract(fine, coarse)
+    seen = order if coarsest is None else order_seen(fine, coarse, coarsest, ratio=ratio)
+    if seen is not None:
+        return math.sqrt(_square(last)) / (ratio**seen - 1)
     weights = [1.0, ratio**-2, ratio**-4]
     readings = np.array([fine, coarse, coarsest], dtype=float)
     best = np.average(readings, axis=0, weights=weights)
     scatter = sum(w * _square(q - best) for w, q in zip(weights, readings, strict=True)) / (len(weights) - 1)
-    trend = max(0.0, last - (1 + ratio**2) * scatter) / (ratio - 1) ** 2
+    turns = np.vdot(last, np.subtract(coarse, coarsest)) < 0
+    trend = 0.0 if turns else max(0.0, _square(last) - (1 + ratio**2) * scatter) / (ratio - 1) ** 2
     return math.sqrt(trend + scatter)
 
 
 def relative_errors(
-    fine: Reading, coarse: Reading, coarsest: Reading | None = None, *, ratio: float = 2.0
+    fine: Reading,
+    coarse: Reading,
+    coarsest: Reading | None = None,
+    *,
+    ratio: float = 2.0,
+    orders: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
     """Error of each quantity from readings by its name and that of what was read: of the worst of these.
 
-    Errors of forces and pressures are taken relative to the largest of their kind: a component that vanishes has none.
+    ``orders`` are those of two runs, by the names of errors, where they are not the first. Errors of forces and
+    pressures are taken relative to the largest of their kind: a component that vanishes has none.
     """
     out = {}
     for error, values in fine.items():
         known = {name: np.atleast_1d(v) for name, v in values.items()}
         coarser = [level[error] for level in (coarse, coarsest) if level is not None]
-        off = [error_of_finest(v, *(level.get(n, 0.0 * v) for level in coarser), ratio=ratio) for n, v in known.items()]
+        order = (orders or {}).get(error, 1.0)
+        off = [
+            error_of_finest(v, *(level.get(n, 0.0 * v) for level in coarser), ratio=ratio, order=order)
+            for n, v in known.items()
+        ]
         scale = math.sqrt(max((_square(v) for v in known.values()), default=0.0))
         out[error] = max(off) / scale if scale > 0 else 0.0
     return out

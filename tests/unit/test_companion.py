@@ -103,12 +103,12 @@ def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
     assert each["maximum depth by mesh [-]"] == pytest.approx(0.04)
 
 
-def test_all_that_is_torn_counts_as_error_of_the_area_lost():
+def test_all_that_is_torn_counts_as_error_of_the_area_lost_and_of_the_depth():
     mine, other = ({LOST: {"a": [a]}, DEPTH: {"d": [1.0]}} for a in (1.0, 1.04))
     found = stated(scene("implicit"), {TORN: 0.1}, mine, other)
     assert found[LOST] == pytest.approx(0.04 + 0.1)
     assert found["area lost in all by mesh and wear steps [-]"] == pytest.approx(0.04)
-    assert found[DEPTH] == 0.0
+    assert found[DEPTH] == pytest.approx(0.1)
 
 
 def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):

@@ -3,6 +3,7 @@
 import csv
 import math
 import pickle
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -159,6 +160,19 @@ def test_jumps_end_before_a_law_changes_by_a_tenth(tmp_path, write_sheet):
         assert cycles == 1 or law.mu(0.5 * (start + end)) == pytest.approx(mean, rel=0.01)
     assert steady_cycles(scene, 0, 40) == 10
     assert steady_cycles(scene, 31, 9) == 9
+
+
+def test_a_coarser_run_lets_a_law_change_by_more(tmp_path, write_sheet):
+    """Only so does it show what the jumps err by; at most half of the law is passed over, however coarse."""
+    scene = read_scene(with_friction(tmp_path, write_sheet, PHASES, *JUMPING))
+    law, error = scene.contacts[0].friction, scene.accuracy.wear_error
+    longest = []
+    for factor in (1.0, 2.0, 24.0):
+        coarse = replace(scene, accuracy=replace(scene.accuracy, wear_error=factor * error))
+        cycles = [steady_cycles(coarse, done, 40 - done) for done in range(40)]
+        change = [law.mu(10.0 * (done + n)) - law.mu(10.0 * done) for done, n in enumerate(cycles)]
+        longest.append(max(d for d, n in zip(change, cycles, strict=True) if n > 1))
+    assert longest[0] <= 0.06 < longest[1] <= 0.12 < longest[2] <= 0.3
 
 
 def test_jump_does_not_skip_a_phase(tmp_path, write_sheet):
