@@ -18,9 +18,9 @@ from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.materials import MooneyRivlin
+from ngwear.mounting import mount
 from ngwear.refinement import mounting_field
 from ngwear.stage import Stage
-from ngwear.stepper import Stepper
 from ngwear.surfaces import Plane
 from ngwear.verify import ring
 from ngwear.verify.builders import mean, meshed
@@ -67,7 +67,7 @@ def seal_turned_round(pressure_on) -> list[Finding]:
     outward, inward = scene.program.cycle
     inward = replace(inward, pressure=pressure_on)
     stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
-    Stepper(scene)._mount(stage)
+    mount(stage, lambda _: None)
     found, lips = [], []
     for stroke in (outward, inward, outward, inward):
         advance(stage.problem, stage.stroke_loads(stroke), StepOptions(first=1.0))
