@@ -67,15 +67,9 @@ def run_to_error(
         level = at_level(scene, across)
         _hand_down(folder, level, done)
         told = _Told(done, across, error)
-        result = run_stated(
-            level, out=out, resume=resume, progress=progress, throw=throw, told=told, figures=False, enough=error
-        )
+        result = run_stated(level, out=out, resume=resume, progress=progress, throw=throw, told=told, enough=error)
         finer = next_across(across, told.mine.get(DEPTH), error) if result.status == COMPLETED else None
         if finer is None:
-            if result.recorder.rows:
-                from ngwear.plots.wear import plot
-
-                plot(folder.path)
             return result
         kept = {name: result.summary[name + unit] for name, unit in COSTS}
         done.append(told.mine | {"left": kept | {"reading": reading(result.recorder.rows)}})

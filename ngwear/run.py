@@ -73,7 +73,8 @@ def run(
     on_step : callable or None
         Called with the state after mounting and after each accepted step.
     errors : callable or None
-        Called with records and summary of a run that reached its end: it may state more errors there.
+        Called with records and summary of a run that reached its end, once all else is written: it may state more
+        errors there.
 
     Raises
     ------
@@ -114,9 +115,7 @@ def run(
     summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
-        if errors is not None and error is None:
-            errors(recorder, summary)
-            summary["wall time [s]"] = round(time.perf_counter() - wall, 3)
+    waits = errors is not None and state is not None and error is None
     if folder is not None:
         folder.finish(recorder, summary)
         if scene.save.vtk and state is not None:
@@ -124,7 +123,14 @@ def run(
         if figures and recorder.rows:
             from ngwear.plots.wear import plot
 
-            plot(folder.path)
+            plot(folder.path, bands=False if waits else None)
+    if waits:
+        errors(recorder, summary)
+        summary["wall time [s]"] = round(time.perf_counter() - wall, 3)
+        if folder is not None:
+            folder.finish(recorder, summary)
+            if figures:
+                plot(folder.path, bands=True)
     if error is not None and throw:
         raise error
     return Result(status, message, summary, recorder, state, error)

@@ -274,7 +274,7 @@ class Stepper:
             )
         if memory is not None:
             memory.commit(plan)
-        if is_due(state):
+        if state.strokes < self.scene.program.strokes and is_due(state):
             remesh(state)
         worn = state.ledger.worn - worn_before
         if not known:
