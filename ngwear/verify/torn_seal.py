@@ -7,9 +7,8 @@
   elements of half the side, both meshes with two evaluations a cycle, which halves the time that this takes. Only the
   area on the finer mesh has a bound that was asked for (10 %). For the rest nobody has derived a reference: the bounds
   are above what was measured, and say what the scene's choices are worth.
-- What the hour states of its own errors (``error_estimates``), over what it differs by from the finer elements. The
-  depth, stated at 0.4 of its error, and friction, at four times, miss the band. What is torn grows with every finer
-  mesh, and no coarser one tells: all of it counts as error of the area lost.
+- What the hour states of its own errors (``error_estimates``), over what it differs by from the finer elements. What is
+  torn grows with every finer mesh, and no coarser one tells: all of it counts as error of the area lost and the depth.
 
 Units: mm, N, MPa. Takes an hour and a half, most of it the finer mesh.
 """
