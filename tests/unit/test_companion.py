@@ -8,7 +8,9 @@ import pytest
 from ngwear import companion
 from ngwear.companion import COARSEST, DEPTH, FILE, LOST, PLACES, coarser, reading, run_stated, stated
 from ngwear.materials import PronySeries
+from ngwear.result_file import read_result
 from ngwear.results import TORN, fingerprint
+from ngwear.run import run
 from ngwear.seen_order import relative_errors
 from ngwear.verify.no_loss import scene
 
@@ -171,10 +173,28 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     assert np.isfinite(summary["error estimates"]["maximum depth [-]"])
 
 
+def test_a_run_is_written_and_drawn_before_its_errors_are_known(tmp_path):
+    """Who stops waiting for companions has lost nothing; only the history is drawn once more is known."""
+    found = {}
+
+    def state(recorder, summary):
+        found["files"] = {file.name for file in tmp_path.iterdir()}
+        found["before"] = json.loads((tmp_path / "summary.json").read_text())
+        summary["error estimates"]["peak pressure [-]"] = 0.1
+
+    run(scene("implicit"), out=tmp_path, errors=state)
+    assert {"result.h5", "series.csv", "profiles.png", "mesh.png"} <= found["files"]
+    assert "history.png" not in found["files"]
+    assert found["before"]["status"] == "completed"
+    assert (tmp_path / "history.png").exists()
+    after = json.loads((tmp_path / "summary.json").read_text())
+    assert after["error estimates"] == found["before"]["error estimates"] | {"peak pressure [-]": 0.1}
+    assert read_result(tmp_path).errors == after["error estimates"]
+
+
 def test_pressures_are_drawn_in_the_band_of_their_error(finished):
     folder, result = finished
     from ngwear.plots.wear import history_figure
-    from ngwear.result_file import read_result
 
     read = read_result(folder)
     assert read.errors == result.summary["error estimates"]
