@@ -10,7 +10,7 @@ from ngwear.effects.friction import FullSliding
 from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.newton import solve
 from ngwear.equilibrium.problem import Problem, Support
-from ngwear.equilibrium.stepping import StepOptions, advance
+from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain, Solid
 from ngwear.geometry.contour import Contour
@@ -99,6 +99,25 @@ def test_state_that_is_not_committed_leaves_no_trace():
         assert solve(problem).converged
         forces.append(sticks.force()[0])
     assert forces[0] == pytest.approx(forces[1], rel=1e-9)
+
+
+def test_a_way_out_of_a_bad_guess_lets_nothing_slip():
+    """The guess is dragged far beyond the limit; what sticks from the start to the goal has not been there."""
+    problem, _, sticks = pressed(PlaneStrain(), StickSlip)
+    vector, forces = problem.state.vec.FV().NumPy(), []
+    start = vector.copy()
+    for travel in (0.05, 0.005):
+        vector[:] = start
+        problem.set_loads({"lid travel [mm]": travel})
+        assert solve(problem).converged
+        forces.append(sticks.force()[0])
+        if travel == 0.05:
+            guess = vector.copy()
+    vector[:] = guess
+    work = relax(problem, StepOptions(first=0.25))
+    assert work.solves > 1
+    assert sticks.force()[0] == pytest.approx(forces[1], rel=1e-4)
+    assert abs(forces[1]) < 0.5 * abs(forces[0])
 
 
 def test_ball_on_a_sheet_slips_from_its_rim_and_then_altogether():
