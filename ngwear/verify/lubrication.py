@@ -9,7 +9,8 @@ References: friction over load is the table's mu in the middle of what each solv
 hundredth that a jump's friction may lag behind its mean; the area is exact, since ``int k ds`` of each step is.
 
 Order: with mu rising as the square of the distance and all jumps alike, the heat's error shall fall with the square of
-the jump. The most that a jump may change the law by goes along: five times ``wear_error`` of its highest value.
+the jump. A tenth of the law's highest value is the most that a jump may change it by, five times
+``wear_error``.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ def scene(friction: FrictionLaw, rate: WearRate | float) -> Scene:
         contacts=(plane,),
         supports=(SupportSpec(edges=("bottom",)),),
         program=Program(cycle=CYCLE, strokes=round(2 * END / 100)),
-        accuracy=Accuracy(patch=PATCH, coarse=0.3, mounting=PATCH, wear_error=0.5),
+        accuracy=Accuracy(patch=PATCH, coarse=0.3, mounting=PATCH, wear_error=0.02, longest_jump=1.0),
     )
 
 
