@@ -127,7 +127,7 @@ def advance(
                 way = f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}"
                 raise ConvergenceError(way + diagnosis(problem), report)
             continue
-        if goal == 1.0 or IMBALANCE not in target or math.isfinite(duration):
+        if update or math.isfinite(duration):
             problem.commit()
         rate.data = (1 / step) * (vector - last)
         last.data = vector

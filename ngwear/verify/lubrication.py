@@ -9,8 +9,7 @@ References: friction over load is the table's mu in the middle of what each solv
 hundredth that a jump's friction may lag behind its mean; the area is exact, since ``int k ds`` of each step is.
 
 Order: with mu rising as the square of the distance and all jumps alike, the heat's error shall fall with the square of
-the jump. A tenth of the law's highest value is the most that a jump may change it by, five times
-``wear_error``.
+the jump. The most that a jump may change a law by, five times ``wear_error``, is a tenth of its highest value here.
 """
 
 from __future__ import annotations
