@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.effects.contact import Contact
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
@@ -132,11 +133,12 @@ class Wearing:
         scene, phase = self.state.stage.scene, self.state.phases[self.index]
         if self.state.stage.remembers:
             return
-        width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last)
+        none = np.zeros_like(self.last)
         phase.pressure, phase.mean, phase.ways = none.copy(), none, np.zeros(len(none))
         for k, spec in enumerate(scene.contacts):
             if spec.wears:
-                phase.pressure[k] = width * at_points(self.outline, *self._rate(spec, {}))
+                profile, rate = self._rate(spec, {})
+                phase.pressure[k] = worn_share(self.outline, profile, rate * profile.weight)
 
     def _rate(self, spec: ContactSpec, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
         """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-]."""
@@ -179,13 +181,15 @@ class Wearing:
                 continue
             contact = stage.contacts[spec.name]
             profile, rate = self._rate(spec, shares)
-            last = contact.from_points(self.last[k] / width) * profile.weight
-            last *= self.last[k].sum() / last.sum() if last.any() else 1.0
-            area = worn_share(halfway, profile, self.own[k] * ways[k] * rate * profile.weight + last)
+            mine, last = rate * profile.weight, _at_nodes(contact, profile, self.last[k] / width, self.last[k].sum())
+            worn = self.own[k] * ways[k] * mine + last
+            area = worn_share(halfway, profile, worn)
             share += area
-            pressure[k], mean[k] = width * at_points(outline, profile, rate), area / ways[k]
+            pressure[k], mean[k] = worn_share(outline, profile, mine), area / ways[k]
             if phase.pressure is not None:
-                off += area - 0.5 * ways[k] * (phase.pressure[k] + pressure[k])
+                before = _at_nodes(contact, profile, phase.pressure[k] / width, phase.pressure[k].sum())
+                trapezoidal = 0.5 * ways[k] * (before + mine)
+                off += width * at_points(halfway, profile, (worn - trapezoidal) / profile.weight)
         known, error = phase.pressure is not None, float(np.abs(off).sum())
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
@@ -214,6 +218,12 @@ class Wearing:
         state.ledger.moment += polygon_moment(outline.points) - polygon_moment(new.points)
         _follow(state, outline, new)
         return known
+
+
+def _at_nodes(contact: Contact, profile: ContactProfile, depth: Array, area: float) -> Array:
+    """Area at a contact's nodes of a depth at the outline's points, so much in all [mm²]."""
+    out = contact.from_points(depth) * profile.weight
+    return out * (area / out.sum()) if out.any() else out
 
 
 def _follow(state: State, outline: Contour, worn: Contour) -> None:
