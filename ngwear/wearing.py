@@ -18,7 +18,7 @@ from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.remesh import remesh
 from ngwear.scene import ContactSpec
 from ngwear.state import State
-from ngwear.wear.archard import at_points, worn_share
+from ngwear.wear.archard import sampled, worn_share
 from ngwear.wear.backward import share_of_last
 from ngwear.wear.strokes import Strokes
 
@@ -189,7 +189,7 @@ class Wearing:
             if phase.pressure is not None:
                 before = _at_nodes(contact, profile, phase.pressure[k] / width, phase.pressure[k].sum())
                 trapezoidal = 0.5 * ways[k] * (before + mine)
-                off += width * at_points(halfway, profile, (worn - trapezoidal) / profile.weight)
+                off += sampled(halfway, profile, worn - trapezoidal)
         known, error = phase.pressure is not None, float(np.abs(off).sum())
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:

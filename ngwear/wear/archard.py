@@ -32,6 +32,12 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
     array, shape (n,)
         Depth W at each contour point times half the length of its two segments [mm²].
     """
+    share = sampled(contour, profile, amount)
+    return share * (amount.sum() / share.sum()) if share.sum() > 0 else share
+
+
+def sampled(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
+    """The same for amounts of either sign: their depth is sampled at the outline's points, the sum roughly kept."""
     n = len(contour)
     ways = np.concatenate([[0.0], np.cumsum(np.tile(contour.lengths, 2))])
 
@@ -52,21 +58,9 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
         depth[points % n] = (1 - part) * at_node[i] + part * at_node[j]
     half = 0.5 * contour.lengths * covered
     share = depth * (half + np.roll(half, 1))
-    if amount.sum() > 0 and share.sum() == 0:  # a contact between two points of the outline
+    if amount.any() and not share.any():  # a contact between two points of the outline
         np.add.at(share, np.rint(profile.t).astype(int) % n, amount)
-    return share * (amount.sum() / share.sum()) if share.sum() > 0 else share
-
-
-def at_points(contour: Contour, profile: ContactProfile, values: Array) -> Array:
-    """Nodal values of a contact at the contour points, zero off its edges."""
-    n = len(contour)
-    out = np.zeros(n)
-    for i, j in profile.edges:
-        a, b = profile.t[i], profile.t[j]
-        b = b if b > a else b + n
-        inside = np.arange(math.ceil(a - 1e-9), math.floor(b + 1e-9) + 1)
-        out[inside % n] = np.interp(inside, [a, b], [values[i], values[j]])
-    return out
+    return share
 
 
 def critical_distance(element: float, specific_wear_rate: float, plane_strain_modulus: float) -> float:
