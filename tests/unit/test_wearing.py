@@ -1,10 +1,13 @@
-"""Backward differences of the worn depth, and what a new mesh keeps of them."""
+"""Backward differences of the worn depth, what a new mesh keeps of them, and the error of a step."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from ngwear.geometry.contour import Contour
 from ngwear.remesh import _moved_areas, _moved_values
+from ngwear.stepper import Stepper
 from ngwear.wear.backward import share_of_last
 
 
@@ -53,3 +56,15 @@ def test_a_new_outline_keeps_the_area_of_depths_and_the_shape_of_values():
     assert moved[0].sum() == pytest.approx((depths[0] * before.widths()).sum(), rel=1e-12)
     assert np.abs(moved[0] / after.widths() - (1 + np.cos(fine))).max() < 1e-2
     assert (moved[1] == 0).all()
+
+
+def test_on_a_coarse_patch_what_a_step_errs_by_is_a_matter_of_its_length(seal):
+    """Half an element across the lip: what the mesh does to pressures is no error of the wear steps."""
+    coarse = replace(seal, accuracy=replace(seal.accuracy, patch=0.04, mounting=0.04))
+    stepper = Stepper(replace(coarse, save=replace(seal.save, strokes=())))
+    state, done = stepper.start(), [0]
+    for _ in range(5):
+        state = stepper.advance(state)
+        done.append(state.strokes)
+    jumps = np.diff(done)
+    assert jumps[-1] > 4 * jumps[0], jumps
