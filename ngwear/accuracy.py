@@ -9,6 +9,7 @@ from ngwear.errors import require
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
 STRESS_ERROR, WEAR_ERROR = 0.05, 0.02  # with ALIKE elements across
+LOOSEST = 0.05  # wear error: beyond, with few elements across, steps err by more than the mesh, and are hard to solve
 LONGEST_JUMP = 5.0  # times the wear error: a tenth of the program with 0.02
 ALIKE = 12.0
 GRADING, STEEPEST = 0.25, 0.5  # with ALIKE elements across or more, and with 2
@@ -52,7 +53,7 @@ class Accuracy:
     across : float or None
         Elements across the contacts, on the average by load, instead of lengths: the run chooses ``patch`` with each
         new mesh, and by the section's size the other lengths. Tolerances that are not given go along: the stresses'
-        with the square of the element edge, the wear's and the longest jump with the edge.
+        with the square of the element edge, the wear's, up to 0.05, and the longest jump with the edge.
     error : float or None
         Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
         (``ngwear.adaptive``).
@@ -123,7 +124,7 @@ class Accuracy:
             return
         finer = 1.0 if self.across is None else ALIKE / self.across
         self._default("stress_error", min(1.0, STRESS_ERROR * finer**2))
-        self._default("wear_error", min(0.5, WEAR_ERROR * finer))
+        self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
         self._default("longest_jump", min(1.0, LONGEST_JUMP * self.wear_error))
         require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
         require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")

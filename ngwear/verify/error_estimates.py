@@ -35,7 +35,6 @@ from ngwear.run_pin import estimates as pin_estimates
 from ngwear.run_pin import readings as pin_readings
 from ngwear.scene import Scene
 from ngwear.seen_order import relative_errors
-from ngwear.sliding.pin import COARSER as PIN_COARSER
 from ngwear.sliding.pin import slide_pin
 from ngwear.verify import pin_on_plate
 from ngwear.verify.base import Check, Stopwatch
@@ -48,6 +47,7 @@ FINER = {
     ("rod_seal", "scene.toml"): 1 / 2,
     ("rod_seal", "scene_filled.toml"): 1 / 2,
 }
+PIN_FINER = 1 / 2
 SPEEDS = (3.0, 1036.0)  # of the pin [mm/s]
 LEAST = 1e-3  # relative error that can be told from chance
 BAND = (0.5, 3.0)
@@ -79,10 +79,10 @@ def stated_of(result: Result, scene: Scene) -> dict[str, float]:
 
 
 def of_pin() -> list[Check]:
-    """The pin's, from its pairs of meshes, against the finer of the next pair."""
+    """The pin's, from its pairs of meshes, against the finer of another pair."""
     watch, scene = Stopwatch(), replace(pin_on_plate.shipped_scene(), speeds=SPEEDS)
     mesh = scene.mesh
-    finer = replace(mesh, patch=mesh.patch / PIN_COARSER, column=mesh.column / PIN_COARSER)
+    finer = replace(mesh, patch=PIN_FINER * mesh.patch, column=PIN_FINER * mesh.column)
     pairs, finest = ([slide_pin(scene.pin, v, mesh=m) for v in SPEEDS] for m in (mesh, finer))
     mine, fine = (pin_readings([pair[1] for pair in p]) for p in (pairs, finest))
     return effectivities(CASE, "pin on plate", pin_estimates(scene, pairs), relative_errors(mine, fine), watch.seconds)

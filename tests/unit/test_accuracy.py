@@ -35,6 +35,7 @@ def test_tolerances_go_along_with_the_elements_across():
     assert half.stress_error == 4 * across.stress_error
     assert half.wear_error == 2 * across.wear_error
     assert half.longest_jump == 2 * across.longest_jump
+    assert Accuracy(across=3).wear_error == Accuracy(across=1).wear_error == 0.05
     given = Accuracy(across=6, wear_error=0.1)
     assert (given.wear_error, given.longest_jump) == (0.1, 0.5)
     assert replace(half, order=3) == Accuracy(across=ALIKE / 2, order=3)
@@ -53,7 +54,10 @@ def test_elements_grow_faster_from_fewer_elements_across_unless_it_is_said_how()
 @pytest.mark.parametrize("across", [48.0, 16.0, 8.0, 2.0])
 def test_a_companion_has_fewer_elements_across(across):
     fine = of(across)
-    assert scaled(fine, 2.0) == of(across / 2)
+    coarse = scaled(fine, 2.0)
+    tolerance = coarse.accuracy.wear_error
+    assert coarse == of(across / 2, wear_error=tolerance, longest_jump=5 * tolerance)
+    assert tolerance == 2 * fine.accuracy.wear_error  # also where a run of its own has no looser one
     assert scaled(scaled(fine, 2.0), 2.0) == scaled(fine, 4.0)
 
 
