@@ -181,13 +181,13 @@ class Wearing:
                 continue
             contact = stage.contacts[spec.name]
             profile, rate = self._rate(spec, shares)
-            mine, last = rate * profile.weight, _at_nodes(contact, profile, self.last[k] / width, self.last[k].sum())
+            mine, last = rate * profile.weight, _at_nodes(contact, profile, self.last[k], width)
             worn = self.own[k] * ways[k] * mine + last
             area = worn_share(halfway, profile, worn)
             share += area
             pressure[k], mean[k] = worn_share(outline, profile, mine), area / ways[k]
             if phase.pressure is not None:
-                before = _at_nodes(contact, profile, phase.pressure[k] / width, phase.pressure[k].sum())
+                before = _at_nodes(contact, profile, phase.pressure[k], width)
                 trapezoidal = 0.5 * ways[k] * (before + mine)
                 off += sampled(halfway, profile, worn - trapezoidal)
         known, error = phase.pressure is not None, float(np.abs(off).sum())
@@ -220,10 +220,10 @@ class Wearing:
         return known
 
 
-def _at_nodes(contact: Contact, profile: ContactProfile, depth: Array, area: float) -> Array:
-    """Area at a contact's nodes of a depth at the outline's points, so much in all [mm²]."""
-    out = contact.from_points(depth) * profile.weight
-    return out * (area / out.sum()) if out.any() else out
+def _at_nodes(contact: Contact, profile: ContactProfile, areas: Array, width: Array) -> Array:
+    """Areas at the outline's points, each so wide, at a contact's nodes [mm²]; the sum is kept."""
+    out = contact.from_points(areas / width) * profile.weight
+    return out * (areas.sum() / out.sum()) if out.any() else out
 
 
 def _follow(state: State, outline: Contour, worn: Contour) -> None:
