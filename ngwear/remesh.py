@@ -73,18 +73,11 @@ def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
         if phase.pressure is not None:
-            phase.pressure = _moved_areas(before, after, phase.pressure)
-            phase.mean = _moved_areas(before, after, phase.mean)
+            phase.pressure = _moved_values(before, after, phase.pressure)
+            phase.mean = _moved_values(before, after, phase.mean)
     if state.depth_error is not None:
         state.depth_error = _moved_values(before, after, state.depth_error)
     state.stage = stage
-
-
-def _moved_areas(before: Contour, after: Contour, areas: Array) -> Array:
-    """Areas at the points of one outline at those of another, each row with the same sum."""
-    moved = _moved_values(before, after, areas / before.widths()) * after.widths()
-    old, new = areas.sum(axis=1), moved.sum(axis=1)
-    return moved * np.divide(old, new, out=np.ones_like(old), where=new > 0)[:, None]
 
 
 def _moved_values(before: Contour, after: Contour, values: Array) -> Array:

@@ -35,10 +35,12 @@ class Phase:
     rate : array or None
         Its change per cycle, on the same mesh.
     pressure : array, shape (contacts, n)
-        Area over way that each contact would wear at the contour points with its pressure at the end of the last time
-        and the highest wear rate, ``int k P / J ds`` [mm].
+        Depth over way that each contact would wear at the contour points with its pressure at the end of the last time
+        and the highest wear rate, ``k P / J`` [-]. Depths, not areas: a sharp lip's points come closer as it wears.
     mean : array, shape (contacts, n), or None
-        The same of what the last time wore over its way, ``ways`` [mm].
+        The same of what the last time wore over its way, ``ways`` [-].
+    area : array, shape (contacts,), or None
+        Area over way that the last time wore [mm].
     error : float
         Of what the last time wore, relative [-]; infinite if it is not known.
     shares : dict of str to array, or None
@@ -49,6 +51,7 @@ class Phase:
     rate: Array | None = None
     pressure: Array | None = None
     mean: Array | None = None
+    area: Array | None = None
     ways: Array | None = None
     error: float = math.inf
     shares: dict[str, Array] | None = None

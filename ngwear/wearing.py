@@ -46,7 +46,7 @@ class Wearing:
     own : array, shape (contacts,)
         Weight of the pressure at the step's end, 1 - a [-].
     last : array, shape (contacts, n)
-        Area at each point of the outline worn by the last step's mean pressure, of depth ``kappa a q_0`` [mm²].
+        Depth at each point of the outline worn by the last step's mean pressure, ``kappa a q_0`` [mm].
     ahead : array, shape (contacts, n)
         Depth taken off in the foreseen outline [mm].
     """
@@ -71,12 +71,12 @@ class Wearing:
         ways = wearing.ways
         if scene.wear.scheme == "implicit" and phase.error <= CALM:
             share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
-            area = wearing._foreseen(index, sliding)
-            share *= area.any(axis=1)
-            wearing.own, wearing.last = 1.0 - share, share[:, None] * area
-            wearing._foresee(area, later or {})
+            depth = wearing._foreseen(index, sliding)
+            share *= depth.any(axis=1)
+            wearing.own, wearing.last = 1.0 - share, share[:, None] * depth
+            wearing._foresee(depth, later or {})
         implicit = scene.wear.scheme == "implicit"
-        depth = wearing.last / wearing.halfway.widths(scene.worn_edges) - wearing.ahead
+        depth = wearing.last - wearing.ahead
         for spec, own, known in zip(scene.contacts, wearing.own, depth, strict=True):
             contact = state.stage.contacts[spec.name]
             contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
@@ -98,7 +98,7 @@ class Wearing:
         return self._ways(self.sliding)
 
     def _foreseen(self, kind: int, sliding: Strokes) -> Array:
-        """Area that the mean pressure of a kind's last step wears at the points of the outline [mm²], each contact.
+        """Depth that the mean pressure of a kind's last step wears at the points of the outline [mm], each contact.
 
         None where friction may stick: what has slipped may stick now.
         """
@@ -109,13 +109,13 @@ class Wearing:
     def _ways(self, sliding: Strokes) -> Array:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
 
-    def _foresee(self, area: Array, later: dict[int, Strokes]) -> None:
-        whole = area.sum(axis=0)
+    def _foresee(self, depth: Array, later: dict[int, Strokes]) -> None:
+        whole, scene = depth.sum(axis=0), self.state.stage.scene
         for kind, sliding in later.items():
             if self.state.phases[kind].error <= CALM:
                 whole = whole + self._foreseen(kind, sliding).sum(axis=0)
         try:
-            foreseen = recede(self.outline, whole, self.state.stage.scene.worn_edges)
+            foreseen = recede(self.outline, whole * self.outline.widths(scene.worn_edges), scene.worn_edges)
             if len(foreseen) != len(self.outline):
                 return
             self.state.stage.body.move_to(foreseen)
@@ -123,7 +123,7 @@ class Wearing:
             log.info("%s: the outline is not foreseen", error)
             return
         moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
-        self.ahead = area * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
+        self.ahead = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
 
     def look(self) -> None:
         """Note what the present pressures would wear, so that the first step's error is known; takes nothing.
@@ -133,12 +133,12 @@ class Wearing:
         scene, phase = self.state.stage.scene, self.state.phases[self.index]
         if self.state.stage.remembers:
             return
-        none = np.zeros_like(self.last)
-        phase.pressure, phase.mean, phase.ways = none.copy(), none, np.zeros(len(none))
+        width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last)
+        phase.pressure, phase.mean, phase.area, phase.ways = none.copy(), none, np.zeros(len(none)), np.zeros(len(none))
         for k, spec in enumerate(scene.contacts):
             if spec.wears:
                 profile, rate = self._rate(spec, {})
-                phase.pressure[k] = worn_share(self.outline, profile, rate * profile.weight)
+                phase.pressure[k] = worn_share(self.outline, profile, rate * profile.weight) / width
 
     def _rate(self, spec: ContactSpec, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
         """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-]."""
@@ -176,6 +176,7 @@ class Wearing:
             state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off = np.zeros(len(outline)), np.zeros(len(outline))
         pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
+        whole = np.zeros(len(ways))
         for k, spec in enumerate(scene.contacts):
             if not spec.wears or ways[k] == 0:
                 continue
@@ -183,9 +184,11 @@ class Wearing:
             profile, rate = self._rate(spec, shares)
             mine, last = rate * profile.weight, _at_nodes(contact, profile, self.last[k], width)
             worn = self.own[k] * ways[k] * mine + last
+            whole[k] = self.own[k] * mine.sum() + (1.0 - self.own[k]) * (0.0 if phase.area is None else phase.area[k])
             area = worn_share(halfway, profile, worn)
+            area *= ways[k] * whole[k] / area.sum() if area.any() else 0.0
             share += area
-            pressure[k], mean[k] = worn_share(outline, profile, mine), area / ways[k]
+            pressure[k], mean[k] = worn_share(halfway, profile, mine) / width, area / ways[k] / width
             if phase.pressure is not None:
                 before = _at_nodes(contact, profile, phase.pressure[k], width)
                 trapezoidal = 0.5 * ways[k] * (before + mine)
@@ -197,7 +200,7 @@ class Wearing:
             before = np.zeros(len(outline)) if state.depth_error is None else state.depth_error
             state.depth_error = before + np.abs(off) / width
             state.ledger.depth_error = float(state.depth_error.max())
-        phase.pressure, phase.mean, phase.ways = pressure, mean, ways
+        phase.pressure, phase.mean, phase.area, phase.ways = pressure, mean, whole, ways
         if scene.deactivation is not None:
             from ngwear import deactivation
 
@@ -220,10 +223,10 @@ class Wearing:
         return known
 
 
-def _at_nodes(contact: Contact, profile: ContactProfile, areas: Array, width: Array) -> Array:
-    """Areas at the outline's points, each so wide, at a contact's nodes [mm²]; the sum is kept."""
-    out = contact.from_points(areas / width) * profile.weight
-    return out * (areas.sum() / out.sum()) if out.any() else out
+def _at_nodes(contact: Contact, profile: ContactProfile, depth: Array, width: Array) -> Array:
+    """Area at a contact's nodes of a depth at the outline's points, each so wide [mm²]; the same in all."""
+    out = contact.from_points(depth) * profile.weight
+    return out * ((depth * width).sum() / out.sum()) if out.any() else out
 
 
 def _follow(state: State, outline: Contour, worn: Contour) -> None:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-GROWTH = 3.0
+GROWTH = 2.0  # with STRETCH below 1 + sqrt 2, up to which backward differences of second order are stable
 SAFETY = 0.9
-STRETCH = 1.25  # how much longer a step may become so that one less remains
+STRETCH = 1.2  # how much longer a step may become so that one less remains
 
 
 @dataclass
@@ -23,7 +23,7 @@ class JumpControl:
     just come into contact would keep the step small for ever), relative to the area that the step removes. That ratio
     is of second order in the jump, so
 
-        n_new = 0.9 n sqrt(tolerance / ratio),   growth at most 3.
+        n_new = 0.9 n sqrt(tolerance / ratio),   growth at most 2.
 
     Parameters
     ----------
