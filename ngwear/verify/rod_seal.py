@@ -64,7 +64,8 @@ def zones_on(profile: ContactProfile, contour: Contour, edge: str) -> list[float
 def peak_over_mean(snapshot: Snapshot) -> float:
     """Highest pressure over the mean one in the middle four fifths of the zone with the highest pressure [-].
 
-    1 for a uniform pressure, 1.14 for half an ellipse, 1.27 for a parabola.
+    1 for a uniform pressure, 1.14 for half an ellipse, 1.27 for a parabola. With ten elements across it scatters by 0.04
+    from mesh to mesh.
     """
     x, p = _outline_pressure(snapshot)
     top = int(np.argmax(p))
@@ -148,12 +149,12 @@ def run_case() -> tuple[list[Check], Result]:
         check("last over first peak pressure, outward stroke [-]", fall, 0.45, bound="below"),
         *(
             check(
-                f"peak over mean pressure in the middle of the lip's contact, last {s.kind} stroke [-]",
-                peak_over_mean(s),
+                f"peak over mean pressure in the middle of the lip's contact, last four {kind} strokes solved [-]",
+                float(np.mean([peak_over_mean(s) for s in result.recorder.snapshots if s.kind == kind][-4:])),
                 1.2,
                 bound="below",
             )
-            for s in result.recorder.snapshots[-2:]
+            for kind in (stroke.name for stroke in scene.program.cycle)
         ),
         check("pressure left of the lip, highest kept over first [-]", max(beside) / beside[0], 1.05, bound="above"),
         check("pressure left of the lip, last over highest kept [-]", beside[-1] / max(beside), 1.0, bound="below"),
