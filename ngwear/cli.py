@@ -151,19 +151,24 @@ def _print_table(values: dict[str, Any]) -> None:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    from ngwear.verify import verify
+    """Print each check once it is made, so that a kill loses none."""
+    from tqdm import tqdm
 
-    checks = verify(options.cases or None)
+    from ngwear.verify import checks_of, chosen
+
+    passed, opening = True, "["
+    with tqdm(chosen(options.cases or None), unit="case", disable=not sys.stderr.isatty(), leave=False) as bar:
+        for name in bar:
+            bar.set_description(name)
+            for check in checks_of(name):
+                passed = passed and check.passed
+                said = opening + json.dumps(check.as_dict(), indent=2) if options.json else str(check)
+                bar.write(said, file=sys.stdout)
+                sys.stdout.flush()
+                opening = ","
     if options.json:
-        print(json.dumps([check.as_dict() for check in checks], indent=2))
-    else:
-        for check in checks:
-            mark = "ok  " if check.passed else "FAIL"
-            print(
-                f"{mark} {check.case:14s} {check.quantity:60s} {check.value:<12.6g} reference {check.reference:<12.6g} "
-                f"error {check.error:.2g} (tolerance {check.tolerance:.2g})"
-            )
-    return OK if all(check.passed for check in checks) else GAVE_UP
+        print("[]" if opening == "[" else "]")
+    return OK if passed else GAVE_UP
 
 
 def _explain(options: argparse.Namespace) -> int:

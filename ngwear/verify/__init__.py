@@ -1,4 +1,4 @@
-"""Reference cases, one a file: each module's ``run()`` returns its checks.
+"""Reference cases, one a file: each module's ``run()`` returns its checks, or yields them as they are made.
 
 A case's module docstring states the problem, the reference with its source, and the units. Modules are
 imported when they are run; listing the cases loads no solver.
@@ -6,7 +6,7 @@ imported when they are run; listing the cases loads no solver.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from importlib import import_module
 
 from ngwear.errors import SceneError
@@ -49,7 +49,7 @@ CASES: dict[str, str] = {
     "rod_seal_filled": "ngwear.verify.rod_seal_filled",
 }
 
-__all__ = ["CASES", "Check", "verify"]
+__all__ = ["CASES", "Check", "checks_of", "chosen", "verify"]
 
 
 def verify(names: Iterable[str] | None = None) -> list[Check]:
@@ -60,8 +60,18 @@ def verify(names: Iterable[str] | None = None) -> list[Check]:
     SceneError
         For a name that is no case.
     """
-    chosen = list(CASES) if names is None else list(names)
-    for name in chosen:
+    return [check for name in chosen(names) for check in checks_of(name)]
+
+
+def chosen(names: Iterable[str] | None = None) -> list[str]:
+    """Return the named cases, or all of them; errors as ``verify``."""
+    out = list(CASES) if names is None else list(names)
+    for name in out:
         if name not in CASES:
             raise SceneError("verify", name, f"no such case; known: {', '.join(CASES)}")
-    return [check for name in chosen for check in import_module(CASES[name]).run()]
+    return out
+
+
+def checks_of(name: str) -> Iterator[Check]:
+    """Run a case; yield its checks as they are made."""
+    yield from import_module(CASES[name]).run()

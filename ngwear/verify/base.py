@@ -53,6 +53,12 @@ class Check:
         """Whether the error is within the tolerance, or the bound is met; never for a value that is not a number."""
         return bool(self.error <= (self.tolerance if self.bound == "near" else 0.0))
 
+    def __str__(self) -> str:
+        return (
+            f"{'ok  ' if self.passed else 'FAIL'} {self.case:14s} {self.quantity:60s} {self.value:<12.6g} "
+            f"reference {self.reference:<12.6g} error {self.error:.2g} (tolerance {self.tolerance:.2g})"
+        )
+
     def as_dict(self) -> dict[str, Any]:
         """What a report or a file needs, in plain types."""
         return {

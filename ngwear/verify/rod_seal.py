@@ -64,8 +64,8 @@ def zones_on(profile: ContactProfile, contour: Contour, edge: str) -> list[float
 def peak_over_mean(snapshot: Snapshot) -> float:
     """Highest pressure over the mean one in the middle four fifths of the zone with the highest pressure [-].
 
-    1 for a uniform pressure, 1.14 for half an ellipse, 1.27 for a parabola. With ten elements across it scatters by 0.04
-    from mesh to mesh.
+    1 for a uniform pressure, 1.14 for half an ellipse, 1.27 for a parabola. With ten elements across it scatters by
+    0.04 from mesh to mesh.
     """
     x, p = _outline_pressure(snapshot)
     top = int(np.argmax(p))

@@ -15,7 +15,7 @@ Units: mm, N, MPa. Takes an hour and a half, most of it the finer mesh.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
@@ -71,12 +71,12 @@ VARIANTS: dict[str, tuple[str, Callable[[Scene], Scene], float, float]] = {
 }
 
 
-def run() -> list[Check]:
+def run() -> Iterator[Check]:
     """Run the case."""
     scene, watch = shipped_scene(folder="torn_seal"), Stopwatch()
     results = {SHIPPED: run_scene(scene)}
-    checks = whole(scene, results[SHIPPED], watch.seconds)
-    checks.append(_check("torn share of the area lost [-]", _torn(results[SHIPPED]), 0.0, watch.seconds, "above"))
+    yield from whole(scene, results[SHIPPED], watch.seconds)
+    yield _check("torn share of the area lost [-]", _torn(results[SHIPPED]), 0.0, watch.seconds, "above")
     plain = replace(scene, save=replace(scene.save, strokes=()))
     for name, (of, vary, area, depth) in VARIANTS.items():
         watch.start()
@@ -84,13 +84,13 @@ def run() -> list[Check]:
         for quantity, tolerance in (("area lost in all [mm^2]", area), ("maximum depth [mm]", depth)):
             label = f"{quantity[: quantity.index(' [')]} over that {of}, {name} [-]"
             ratio = results[name].summary[quantity] / results[of].summary[quantity]
-            checks.append(Check(CASE, label, ratio, 1.0, tolerance, watch.seconds))
+            yield Check(CASE, label, ratio, 1.0, tolerance, watch.seconds)
         torn = _torn(results[name])
-        checks.append(_check(f"torn share of the area lost, {name} [-]", torn, 0.0, watch.seconds, "above"))
+        yield _check(f"torn share of the area lost, {name} [-]", torn, 0.0, watch.seconds, "above")
     mine = results[TWO]
     true = relative_errors(*(reading(result.recorder.rows) for result in (mine, results["elements of half the side"])))
     said = stated_of(mine, evaluated(plain, 2))
-    return checks + effectivities(CASE, scene.name, said, true, watch.seconds)
+    yield from effectivities(CASE, scene.name, said, true, watch.seconds)
 
 
 def whole(scene: Scene, result: Result, seconds: float) -> list[Check]:

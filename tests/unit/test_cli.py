@@ -2,12 +2,14 @@ import json
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import pytest
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.stepper import Stepper
+from ngwear.verify import CASES, Check
 
 INTERRUPTED = 130
 
@@ -164,6 +166,24 @@ def test_explain_names_what_is_in_and_what_is_left_out(sheet_file, capsys):
 def test_verify_of_an_unknown_case(capsys):
     assert main(["verify", "moon"]) == BAD_INPUT
     assert "moon" in capsys.readouterr().err
+
+
+def test_verify_prints_each_check_once_it_is_made(capsys, monkeypatch):
+    told = []
+
+    def run():
+        for value in (1.0, 1.5):
+            yield Check("moon", "mass [-]", value, 1.0, 0.1, 0.0)
+            told.append(capsys.readouterr().out)
+
+    monkeypatch.setitem(CASES, "moon", "moon")
+    monkeypatch.setitem(sys.modules, "moon", SimpleNamespace(run=run))
+    assert main(["verify", "moon", "--json"]) == GAVE_UP
+    assert [check["value"] for check in json.loads("".join(told) + capsys.readouterr().out)] == [1.0, 1.5]
+    assert all('"mass [-]"' in part for part in told)
+    told.clear()
+    assert main(["verify", "moon"]) == GAVE_UP
+    assert [part.split()[0] for part in told] == ["ok", "FAIL"]
 
 
 def test_help_and_bad_scenes_load_no_solver(tmp_path):
