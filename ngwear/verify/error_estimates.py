@@ -24,7 +24,7 @@ Takes an hour, nearly half of it the pin's finer mesh.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from ngwear.companion import COARSER, coarser, reading, scaled, stated
@@ -52,13 +52,12 @@ LEAST = 1e-3  # relative error that can be told from chance
 BAND = (0.5, 3.0)
 
 
-def run() -> list[Check]:
+def run() -> Iterator[Check]:
     """Run the case."""
-    checks = []
     for (folder, name), factor in FINER.items():
         scene = shipped_scene(name, folder)
-        checks += of_run(scene.name, scene, factor)
-    return [*checks, *of_pin()]
+        yield from of_run(scene.name, scene, factor)
+    yield from of_pin()
 
 
 def of_run(words: str, scene: Scene, factor: float) -> list[Check]:
