@@ -1,7 +1,7 @@
 """The rod seal with cycle jumps against the same with each of its 200 strokes solved.
 
 Both runs share mesh settings and scene, so that only the wear step differs. The error that the jump run
-reports of itself, from the embedded pair of backward Euler and the trapezoidal rule, shall be at least half
+reports of itself, from the embedded pair of backward differences and the trapezoidal rule, shall be at least half
 of the true one.
 
 Even jumps of two cycles over the first 48 strokes against single ones, on coarser elements: steps of second order
