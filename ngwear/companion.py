@@ -8,6 +8,9 @@ By where a mesh happens to put its nodes, a peak of pressure or the end of a con
 stroke. So histories are compared, at the same strokes of the last half of the run, and the error is that of their
 mean square.
 
+Elements and jumps may err against each other, and what they make up for in one run does not last in the next. What the
+steps tell of the depth themselves is known better; no less than that is stated.
+
 The estimate cannot see what all three share: the outline's points, the laws and their constants, and steps that the
 scene prescribes (``wear.step`` other than ``"jump"``). Two of these are known separately; they are stated by their
 names and added: arms of the memory that are folded away err by a bounded share of the stress, and prescribed steps by
@@ -126,6 +129,8 @@ def stated(
     prescribed = {} if scene.wear.step == "jump" else steps
     for name, error in levels.items():
         out[name] = error + folded + prescribed.get(name, 0.0)
+    if DEPTH in levels and not prescribed:
+        out[DEPTH] = max(out[DEPTH], steps.get(DEPTH, 0.0))
     for name in (LOST, DEPTH):
         if name in levels:
             out[name] += embedded.get(TORN, 0.0)

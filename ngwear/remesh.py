@@ -75,8 +75,8 @@ def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
         if phase.pressure is not None:
             phase.pressure = _moved_values(before, after, phase.pressure)
             phase.mean = _moved_values(before, after, phase.mean)
-    if state.depth_error is not None:
-        state.depth_error = _moved_values(before, after, state.depth_error)
+    if state.depths is not None:
+        state.depths = _moved_values(before, after, state.depths)
     state.stage = stage
 
 

@@ -72,7 +72,8 @@ class Ledger:
     area_error : float
         Sum of the steps' embedded errors of worn area [mm²].
     depth_error : float
-        Largest sum of the embedded errors of depth at one point of the outline [mm].
+        What the greatest depth changes by if each point's sum of the steps' errors, with their signs, is taken off it
+        [mm].
     remesh_jump : float
         Largest relative change of the section's area in a remesh [-].
     lost : dict of Fate to float
@@ -100,8 +101,9 @@ class Ledger:
 class State:
     """An accepted state of a run; ``Stepper.advance`` turns one into the next.
 
-    ``fatigue`` and ``strained`` are what each element has used up of its life, and what the present cycle uses up so
-    far [-], of a scene whose damage adds up over cycles.
+    ``depths``, shape (2, n), are the depth worn at the points of the outline and the sum of what its steps err by, with
+    their signs [mm]. ``fatigue`` and ``strained`` are what each element has used up of its life, and what the present
+    cycle uses up so far [-], of a scene whose damage adds up over cycles.
     """
 
     stage: Stage
@@ -110,7 +112,7 @@ class State:
     strokes: int = 0
     ledger: Ledger = field(default_factory=Ledger)
     work: Work = field(default_factory=Work)
-    depth_error: Array | None = None
+    depths: Array | None = None
     counters: dict[str, WornProfile] = field(default_factory=dict)
     memory: CycleMemory | None = None
     reports: list[StrokeReport] = field(default_factory=list)

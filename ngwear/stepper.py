@@ -222,7 +222,7 @@ class Stepper:
             "reports": state.reports,
             "ledger": state.ledger.copy(),
             "counters": state.counters,
-            "depth_error": None if state.depth_error is None else state.depth_error.copy(),
+            "depths": state.depths,
         }
 
     def _restore(self, state: State, saved: dict[str, Any]) -> None:

@@ -19,7 +19,7 @@ from ngwear.remesh import remesh
 from ngwear.scene import ContactSpec
 from ngwear.state import State
 from ngwear.wear.archard import sampled, worn_share
-from ngwear.wear.backward import share_of_last
+from ngwear.wear.backward import error_over_difference, share_of_last
 from ngwear.wear.strokes import Strokes
 
 Array = NDArray[np.float64]
@@ -152,7 +152,9 @@ class Wearing:
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.
 
-        The error is the difference from the trapezoidal rule, in the depth of each point of the outline.
+        The error of the area is the difference from the trapezoidal rule, its absolute values over the outline added
+        up. That of the depth at a point is what this tells of the step itself (``wear.backward``), with its sign: steps
+        that wear too much here and too little there, or then, have partly made up for it.
 
         Raises
         ------
@@ -174,7 +176,7 @@ class Wearing:
             from ngwear import counter_wear
 
             state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
-        share, off = np.zeros(len(outline)), np.zeros(len(outline))
+        share, off, err = np.zeros((3, len(outline)))
         pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
         whole = np.zeros(len(ways))
         for k, spec in enumerate(scene.contacts):
@@ -192,14 +194,17 @@ class Wearing:
             if phase.pressure is not None:
                 before = _at_nodes(contact, profile, phase.pressure[k], width)
                 trapezoidal = 0.5 * ways[k] * (before + mine)
-                off += sampled(halfway, profile, worn - trapezoidal)
-        known, error = phase.pressure is not None, float(np.abs(off).sum())
-        phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
+                difference = sampled(halfway, profile, worn - trapezoidal)
+                off += difference
+                err += difference * error_over_difference(ways[k], phase.ways[k] if self.own[k] < 1.0 else 0.0)
+        known, missed = phase.pressure is not None, float(np.abs(off).sum())
+        phase.error = missed / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
-            state.ledger.area_error += error
-            before = np.zeros(len(outline)) if state.depth_error is None else state.depth_error
-            state.depth_error = before + np.abs(off) / width
-            state.ledger.depth_error = float(state.depth_error.max())
+            state.ledger.area_error += missed
+        step = np.stack([share, err]) / width
+        state.depths = step if state.depths is None else state.depths + step
+        depth, error = state.depths
+        state.ledger.depth_error = abs(float((depth - error).max() - depth.max()))
         phase.pressure, phase.mean, phase.area, phase.ways = pressure, mean, whole, ways
         if scene.deactivation is not None:
             from ngwear import deactivation

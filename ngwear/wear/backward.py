@@ -19,3 +19,24 @@ def share_of_last(now: float, before: float) -> float:
         ``int k ds`` over the highest k, of this step and of the last [mm]; before = 0 if there is none.
     """
     return now / (before + 2 * now) if before > 0 else 0.0
+
+
+def error_over_difference(now: float, before: float) -> float:
+    """A step's error over its difference from the trapezoidal rule, to leading order [-].
+
+    With a mean pressure p + p' s/2 + p'' s²/6 over a way s, the step above errs by e and the trapezoidal rule by 1/6,
+    both in p'' s²/2:
+
+        e = a / (3 r²) + (1 - a) - 1/3,   e / (e - 1/6) = 1 + r (1 + 2 r) / (2 + 3 r).
+
+    Backward Euler errs in first order, so that the difference is its error.
+
+    Parameters
+    ----------
+    now, before : float
+        As in ``share_of_last``.
+    """
+    if before <= 0:
+        return 1.0
+    ratio = now / before
+    return 1 + ratio * (1 + 2 * ratio) / (2 + 3 * ratio)

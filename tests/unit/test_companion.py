@@ -99,6 +99,8 @@ def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
         assert found[f"{name} by mesh and wear steps [-]"] == pytest.approx(0.04)
         assert found[f"{name} [-]"] == pytest.approx(0.04 + bound)
     assert found["maximum depth by the wear steps alone [-]"] == 0.02
+    jumpy = stated(jumps, embedded | {DEPTH: 0.06}, mine, other)
+    assert jumpy[DEPTH] == pytest.approx(0.06), "what elements and jumps make up for is stated all the same"
     each = stated(replace(jumps, wear=replace(jumps.wear, step="each")), embedded, mine, other)
     assert each["maximum depth [-]"] == pytest.approx(0.04 + bound + 0.02)
     assert each["peak pressure [-]"] == pytest.approx(0.04 + bound)

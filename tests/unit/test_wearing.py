@@ -8,7 +8,7 @@ import pytest
 from ngwear.geometry.contour import Contour
 from ngwear.remesh import _moved_values
 from ngwear.stepper import Stepper
-from ngwear.wear.backward import share_of_last
+from ngwear.wear.backward import error_over_difference, share_of_last
 
 
 def worn(ways):
@@ -36,6 +36,18 @@ def test_order_is_two_with_even_and_with_growing_steps(grading):
         errors.append(abs(worn(np.diff(places)) - (1 - np.exp(-2.0))))
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert (orders > 1.85).all(), orders
+
+
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
+def test_the_difference_from_the_trapezoidal_rule_tells_the_error_of_a_step(ratio):
+    """Of a pressure exp(-s) that is known until the step; the first step is backward Euler."""
+    before, way = 1e-3, ratio * 1e-3
+    last, begin, end = (np.exp(before) - 1) / before, 1.0, np.exp(-way)
+    exact, trapezoidal = (1 - end) / way, (begin + end) / 2
+    for share, length in ((share_of_last(way, before), before), (0.0, 0.0)):
+        step = share * last + (1 - share) * end
+        told = (step - trapezoidal) * error_over_difference(way, length)
+        assert told == pytest.approx(step - exact, rel=3e-3)
 
 
 def test_a_stiff_step_lands_on_the_steady_state():
