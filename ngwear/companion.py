@@ -52,8 +52,7 @@ WHOLE = {
 }
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
-FORCE = "friction force"
-STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", FORCE)}
+STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "friction force")}
 PLACES = 17  # of the last half of the run, at which histories are read
 
 
@@ -85,23 +84,22 @@ def coarser(scene: Scene, factor: float = COARSER) -> Scene:
 def reading(rows: list[dict[str, Any]]) -> dict[str, dict[str, list[float]]]:
     """What is read off along the last half of a run, by the name of its error: whole, and in each kind of stroke.
 
-    Strokes between those that were solved are interpolated; those looked at without wear are left out. The force of a
-    step is that of its mean, and no matter of where nodes fall: it is read at the end only.
+    Strokes between those that were solved are interpolated; those looked at without wear are left out. The friction
+    force of a step is that of its mean way: where a law changes it, the history errs by more than its end.
     """
     solved = [row for row in rows if row["strokes in one solve [-]"] > 0 or row["stroke [-]"] == 0]
     kinds = {kind: [row for row in solved if row["kind [-]"] == kind] for kind in dict.fromkeys(map(_kind, solved))}
     steps = kinds[_kind(solved[-1])]  # where all strokes of a step have worn
     places = np.linspace(0.5, 1.0, PLACES) * solved[-1]["stroke [-]"]
 
-    def history(column: str, of: list[dict[str, Any]], last: int = PLACES) -> list[float]:
-        return np.interp(places[-last:], [row["stroke [-]"] for row in of], [row[column] for row in of]).tolist()
+    def history(column: str, of: list[dict[str, Any]]) -> list[float]:
+        return np.interp(places, [row["stroke [-]"] for row in of], [row[column] for row in of]).tolist()
 
     out = {error: {column: history(column, steps)} for error, column in WHOLE.items() if column in steps[-1]}
     for kind, mine in kinds.items():
         for words, error in STROKE.items():
             columns = [c for c in mine[-1] if f" {words} " in c and not c.endswith("[-]")]
-            last = 1 if words == FORCE else PLACES
-            out.setdefault(error, {}).update({f"{kind}: {c}": history(c, mine, last) for c in columns})
+            out.setdefault(error, {}).update({f"{kind}: {c}": history(c, mine) for c in columns})
     return out
 
 

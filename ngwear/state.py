@@ -72,8 +72,8 @@ class Ledger:
     area_error : float
         Sum of the steps' embedded errors of worn area [mm²].
     depth_error : float
-        What the greatest depth changes by if each point's sum of the steps' errors, with their signs, is taken off it
-        [mm].
+        What the greatest depth changes by if each point's sum of the steps' errors, with their signs, is taken off it;
+        of jumps only, where the scene lets cycles be jumped [mm].
     remesh_jump : float
         Largest relative change of the section's area in a remesh [-].
     lost : dict of Fate to float

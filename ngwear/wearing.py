@@ -154,7 +154,8 @@ class Wearing:
 
         The error of the area is the difference from the trapezoidal rule, its absolute values over the outline added
         up. That of the depth at a point is what this tells of the step itself (``wear.backward``), with its sign: steps
-        that wear too much here and too little there, or then, have partly made up for it.
+        that wear too much here and too little there, or then, have partly made up for it. Where a scene lets cycles be
+        jumped, single ones are what it asks for: only jumps err in depth.
 
         Raises
         ------
@@ -201,6 +202,8 @@ class Wearing:
         phase.error = missed / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
             state.ledger.area_error += missed
+        if scene.wear.step == "jump" and self.sliding.repeats <= 1:
+            err[:] = 0.0
         step = np.stack([share, err]) / width
         state.depths = step if state.depths is None else state.depths + step
         depth, error = state.depths

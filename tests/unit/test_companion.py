@@ -82,7 +82,7 @@ def test_histories_are_read_along_the_last_half(finished):
     assert depth[0] == pytest.approx(half)
     looked_at = dict(rows[-1], **{"strokes in one solve [-]": 0, "maximum depth [mm]": 9.0})
     assert reading([*rows, looked_at]) == read
-    assert all(len(force) == 1 for force in read["friction force [-]"].values())
+    assert all(len(force) == PLACES for force in read["friction force [-]"].values())
 
 
 def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
