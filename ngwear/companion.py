@@ -127,7 +127,7 @@ def stated(
     prescribed = {} if scene.wear.step == "jump" else steps
     for name, error in levels.items():
         out[name] = error + folded + prescribed.get(name, 0.0)
-    if DEPTH in levels and not prescribed:
+    if DEPTH in levels and scene.wear.step == "jump":
         out[DEPTH] = max(out[DEPTH], steps.get(DEPTH, 0.0))
     for name in (LOST, DEPTH):
         if name in levels:

@@ -149,13 +149,24 @@ class Wearing:
         rate *= contact.wear_factor(profile.pressure)
         return profile, rate / contact.at_nodes(stage.elasticity.volume_ratio())
 
+    def _book_depths(self, worn: Array, error: Array) -> None:
+        """Add a step's depth and its error at the points of the outline to the run's [mm].
+
+        Where a scene lets cycles be jumped, single ones are what it asks for: only jumps err.
+        """
+        state = self.state
+        asked = state.stage.scene.wear.step == "jump" and self.sliding.repeats <= 1
+        step = np.stack([worn, 0.0 * error if asked else error])
+        state.depths = step if state.depths is None else state.depths + step
+        depth, error = state.depths
+        state.ledger.depth_error = abs(float((depth - error).max() - depth.max()))
+
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.
 
         The error of the area is the difference from the trapezoidal rule, its absolute values over the outline added
         up. That of the depth at a point is what this tells of the step itself (``wear.backward``), with its sign: steps
-        that wear too much here and too little there, or then, have partly made up for it. Where a scene lets cycles be
-        jumped, single ones are what it asks for: only jumps err in depth.
+        that wear too much here and too little there, or then, have partly made up for it.
 
         Raises
         ------
@@ -198,16 +209,11 @@ class Wearing:
                 difference = sampled(halfway, profile, worn - trapezoidal)
                 off += difference
                 err += difference * error_over_difference(ways[k], phase.ways[k] if self.own[k] < 1.0 else 0.0)
-        known, missed = phase.pressure is not None, float(np.abs(off).sum())
-        phase.error = missed / float(share.sum()) if known and share.sum() > 0 else math.inf
+        known, error = phase.pressure is not None, float(np.abs(off).sum())
+        phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
-            state.ledger.area_error += missed
-        if scene.wear.step == "jump" and self.sliding.repeats <= 1:
-            err[:] = 0.0
-        step = np.stack([share, err]) / width
-        state.depths = step if state.depths is None else state.depths + step
-        depth, error = state.depths
-        state.ledger.depth_error = abs(float((depth - error).max() - depth.max()))
+            state.ledger.area_error += error
+        self._book_depths(share / width, err / width)
         phase.pressure, phase.mean, phase.area, phase.ways = pressure, mean, whole, ways
         if scene.deactivation is not None:
             from ngwear import deactivation

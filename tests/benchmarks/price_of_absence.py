@@ -3,7 +3,7 @@
 A sheet under a roller is mounted and slid to and fro, once with an effect and once without. The one without is asked
 for in two processes: one never had the effect, the other ran the scene with the effect and then took it out
 (``dataclasses.replace``). They run in turn, A B B A ..., each on one thread. Printed are CPU times, medians of the
-rounds, and that of the ratios of total times in each round with its 95 % interval (by rank): a core is not only slowed
+rounds, and that of the ratios of total times in each round with its 95 % interval: a core is not only slowed
 by other jobs but faster at times, too, so that least times are chance.
 
 Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
@@ -12,7 +12,6 @@ Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
 
 import hashlib
 import json
-import math
 import os
 import pickle
 import statistics
@@ -21,6 +20,8 @@ import sys
 import time
 from dataclasses import replace
 from pathlib import Path
+
+from scipy.stats import quantile_test
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NGS_NUM_THREADS"), "1")
 KINDS = ("never", "removed")
@@ -193,16 +194,17 @@ def row(effect, told, runs):
     """A line of the table."""
     present, absent = told["removed"]["present"], told["never"]["absent"]
     median = {kind: [statistics.median(r[i] for r in runs[kind]) for i in (0, 1)] for kind in KINDS}
-    ratios = sorted(a[0] / b[0] for a, b in zip(runs["removed"], runs["never"], strict=True))
-    low = max(0, math.floor(0.5 * len(ratios) - 0.98 * math.sqrt(len(ratios))))
-    spread = f"{ratios[low]:.3f} to {ratios[-1 - low]:.3f}"
+    ratios = [a[0] / b[0] for a, b in zip(runs["removed"], runs["never"], strict=True)]
+    ratio = statistics.median(ratios)
+    interval = quantile_test(ratios, q=ratio).confidence_interval()  # none of fewer than six
+    spread = f"{interval.low:.3f} to {interval.high:.3f}"
     kilobytes = [
         (f["bytes at points"] + f["bytes of the state"] + 12 * f["matrix entries"]) / 1024 for f in (present, absent)
     ]
     return (
         f"| {effect} | {present['unknowns']} / {absent['unknowns']} | {kilobytes[0]:.0f} / {kilobytes[1]:.0f} "
         f"| {1e3 * present['assembly']:.1f} / {1e3 * median['never'][1]:.1f} "
-        f"| {present['total']:.2f} / {median['never'][0]:.2f} | {statistics.median(ratios):.3f} ({spread}) |"
+        f"| {present['total']:.2f} / {median['never'][0]:.2f} | {ratio:.3f} ({spread}) |"
     )
 
 
