@@ -49,6 +49,9 @@ class Wearing:
         Depth at each point of the outline worn by the last step's mean pressure, ``kappa a q_0`` [mm].
     ahead : array, shape (contacts, n)
         Depth taken off in the foreseen outline [mm].
+    coming : array, shape (n,)
+        Depth that the step's later strokes are to wear, where the nodes cannot follow to the foreseen outline [mm]: the
+        solve leaves that much air, and no outline lags behind by what half the step wears.
     """
 
     state: State
@@ -58,6 +61,7 @@ class Wearing:
     own: Array
     last: Array
     ahead: Array
+    coming: Array
 
     @classmethod
     def begin(cls, state: State, index: int, sliding: Strokes, *, later: dict[int, Strokes] | None = None) -> Wearing:
@@ -67,7 +71,8 @@ class Wearing:
         """
         scene, phase, outline = state.stage.scene, state.phases[index], state.contour
         n, count = len(outline), len(scene.contacts)
-        wearing = cls(state, index, sliding, outline, np.ones(count), np.zeros((count, n)), np.zeros((count, n)))
+        none = np.zeros((count, n))
+        wearing = cls(state, index, sliding, outline, np.ones(count), none, none, np.zeros(n))
         ways = wearing.ways
         if scene.wear.scheme == "implicit" and phase.error <= CALM:
             share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
@@ -76,7 +81,7 @@ class Wearing:
             wearing.own, wearing.last = 1.0 - share, share[:, None] * depth
             wearing._foresee(depth, later or {})
         implicit = scene.wear.scheme == "implicit"
-        depth = wearing.last - wearing.ahead
+        depth = wearing.last - wearing.ahead + wearing.coming
         for spec, own, known in zip(scene.contacts, wearing.own, depth, strict=True):
             contact = state.stage.contacts[spec.name]
             contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
@@ -110,17 +115,19 @@ class Wearing:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
 
     def _foresee(self, depth: Array, later: dict[int, Strokes]) -> None:
-        whole, scene = depth.sum(axis=0), self.state.stage.scene
+        scene, coming = self.state.stage.scene, np.zeros(len(self.outline))
         for kind, sliding in later.items():
             if self.state.phases[kind].error <= CALM:
-                whole = whole + self._foreseen(kind, sliding).sum(axis=0)
+                coming = coming + self._foreseen(kind, sliding).sum(axis=0)
+        whole = depth.sum(axis=0) + coming
         try:
             foreseen = recede(self.outline, whole * self.outline.widths(scene.worn_edges), scene.worn_edges)
             if len(foreseen) != len(self.outline):
-                return
+                raise GeometryError("the outline needs other points")
             self.state.stage.body.move_to(foreseen)
         except (GeometryError, MeshError) as error:
             log.info("%s: the outline is not foreseen", error)
+            self.coming = coming
             return
         moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
         self.ahead = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)

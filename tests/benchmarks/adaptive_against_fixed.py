@@ -1,4 +1,4 @@
-"""What the run's own choices save: ``Accuracy(across=...)`` against fixed settings, at equal error of the depth.
+"""What the run's own choices save: levels of ``Accuracy(error=...)`` against fixed settings, at equal error of the depth.
 
 A fixed setting is an element edge and a number of strokes in a jump, for the whole run, of two kinds: with a mesh that
 is as fine along all worn edges, as one draws it who does not know where the contact will be (``edges``), and with one
@@ -48,14 +48,14 @@ def fine_along_the_edges(edge):
 
 def subject(kind, setting, jump, name):
     """One run, as JSON on the last line."""
-    from ngwear.accuracy import Accuracy
+    from ngwear.adaptive import at_level
     from ngwear.run import run
     from ngwear.scenefile import read_scene
 
     scene = read_scene(GEOMETRIES / name / "scene.toml")
     scene = replace(scene, save=replace(scene.save, strokes=()))
     if kind == "adaptive":
-        scene = replace(scene, accuracy=Accuracy(across=setting))
+        scene = at_level(scene, setting)
     else:
         own = scene.accuracy
         lengths = {"patch": setting, "mounting": max(setting, own.mounting), "coarse": max(setting, own.coarse)}

@@ -114,8 +114,8 @@ def test_a_single_run_is_no_answer():
 
 def test_a_level_keeps_what_is_not_about_the_error():
     asked = replace(to(0.01), accuracy=Accuracy(error=0.01, order=3, grading=0.4, folding_error=0.1))
-    level = at_level(asked, 6.0).accuracy
-    assert level == Accuracy(across=6.0, order=3, grading=0.4, folding_error=0.1)
+    level = at_level(asked, 5.0).accuracy
+    assert level == Accuracy(across=5.0, longest_jump=0.1, order=3, grading=0.4, folding_error=0.1)
 
 
 @pytest.mark.parametrize(

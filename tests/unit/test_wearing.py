@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from ngwear.errors import MeshError
 from ngwear.geometry.contour import Contour
 from ngwear.remesh import _moved_values
 from ngwear.stepper import Stepper
 from ngwear.wear.backward import error_over_difference, share_of_last
+from ngwear.wearing import Wearing
 
 
 def worn(ways):
@@ -76,3 +78,33 @@ def test_on_a_coarse_patch_what_a_step_errs_by_is_a_matter_of_its_length(seal):
         done.append(state.strokes)
     jumps = np.diff(done)
     assert jumps[-1] > 4 * jumps[0], jumps
+
+
+def test_where_nodes_cannot_follow_the_strokes_to_come_leave_air(seal, monkeypatch):
+    """The outward stroke's peak with the inward strokes' wear in its outline, as air under it, and left out."""
+    coarse = replace(seal, accuracy=replace(seal.accuracy, patch=0.04, mounting=0.04), save=replace(seal.save, strokes=()))
+    stepper = Stepper(coarse)
+    state = stepper.start()
+    while state.strokes < 30:
+        state = stepper.advance(state)
+    cycles = state.control.cycles
+    outward, inward = (stepper._strokes(kind, state.strokes, cycles) for kind in (0, 1))
+
+    def peak(later, *, follows):
+        saved = stepper._save(state)
+        with monkeypatch.context() as patch:
+            if not follows:
+                patch.setattr(state.stage.body, "move_to", _refuse)
+            Wearing.begin(state, 0, outward, later=later)
+        stepper._solve_phase(state, 0, coarse.program.cycle[0], outward)
+        found = state.stage.contacts["rod"].profile().pressure.max()
+        stepper._restore(state, saved)
+        return found
+
+    whole = peak({1: inward}, follows=True)
+    air, none = (abs(peak(later, follows=False) / whole - 1.0) for later in ({1: inward}, {}))
+    assert air < 0.4 * none, (air, none)
+
+
+def _refuse(contour):
+    raise MeshError("an element would turn inside out")
