@@ -1,9 +1,10 @@
 """A run that states an error no larger than was asked for: finer and finer levels, the last of which is kept.
 
 A level has two or four times as many elements across the contacts as the one before, and tolerances of stresses and
-wear that go along (``Accuracy``), as do the longest jumps, shorter than a preset's: they are cheaper than elements. Within it the run chooses the patch with each new mesh, the elements elsewhere by
-their stresses, and the jumps by what the wear steps err by. Levels are the companions of finer ones
-(``ngwear.companion``), so that the first alone needs some of its own; one, if that shows an error small enough.
+wear that go along (``Accuracy``), as do the longest jumps, shorter than a preset's: they are cheaper than elements.
+Within it the run chooses the patch with each new mesh, the elements elsewhere by their stresses, and the jumps by what
+the wear steps err by. Levels are the companions of finer ones (``ngwear.companion``), so that the first alone needs
+some of its own; one, if that shows an error small enough.
 
 The error meant is that of the greatest depth; others are stated beside it.
 """
@@ -29,7 +30,7 @@ LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier lev
 FIRST, AT = 8.0, 0.01  # elements across of the first level when so much error is asked for
 COARSEST_FIRST, FINEST_FIRST = 2.0, 32.0
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
-JUMPS = 0.5  # longest jump times elements across: the rod seal errs less for its seconds than with 1.2, and no more with 0.4
+JUMPS = 0.5  # longest jump times elements across; with a preset's 1.2 they would err more than the elements
 ACROSS, CPU = "elements across [-]", "CPU time [s]"
 
 

@@ -1,4 +1,4 @@
-"""What the run's own choices save: levels of ``Accuracy(error=...)`` against fixed settings, at equal error of the depth.
+"""What the run's own choices save: levels of ``Accuracy(error=...)`` against fixed settings, at equal error of depth.
 
 A fixed setting is an element edge and a number of strokes in a jump, for the whole run, of two kinds: with a mesh that
 is as fine along all worn edges, as one draws it who does not know where the contact will be (``edges``), and with one

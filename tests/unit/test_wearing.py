@@ -82,8 +82,8 @@ def test_on_a_coarse_patch_what_a_step_errs_by_is_a_matter_of_its_length(seal):
 
 def test_where_nodes_cannot_follow_the_strokes_to_come_leave_air(seal, monkeypatch):
     """The outward stroke's peak with the inward strokes' wear in its outline, as air under it, and left out."""
-    coarse = replace(seal, accuracy=replace(seal.accuracy, patch=0.04, mounting=0.04), save=replace(seal.save, strokes=()))
-    stepper = Stepper(coarse)
+    coarse = replace(seal, accuracy=replace(seal.accuracy, patch=0.04, mounting=0.04))
+    stepper = Stepper(replace(coarse, save=replace(seal.save, strokes=())))
     state = stepper.start()
     while state.strokes < 30:
         state = stepper.advance(state)
