@@ -17,7 +17,9 @@ names and added: arms of the memory that are folded away err by a bounded share 
 what the embedded estimate says of depth and area. What friction tears out is no matter of convergence: elements of half
 the side tear nearly twice as much (``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is
 torn, and comes loose by it, counts as error of the area lost in all; and, as a share of that area, of the depth, which
-is the area over the width that wears. Time has no steps: strokes integrate the arms exactly.
+is the area over the width that wears. Nor is the peak pressure, at edges that torn elements leave: as at those of a flat
+punch, finer elements only show more of it. No less is stated than what the finer companion differs by. Time has no steps:
+strokes integrate the arms exactly.
 """
 
 from __future__ import annotations
@@ -44,7 +46,7 @@ from ngwear.sweep import end_with_parent, one_thread
 
 COARSER = 2.0
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
-DEPTH, LOST = "maximum depth [-]", "area lost in all [-]"
+DEPTH, LOST, PEAK = "maximum depth [-]", "area lost in all [-]", "peak pressure [-]"
 WHOLE = {
     DEPTH: "maximum depth [mm]",
     "worn area [-]": "area removed from the outline [mm^2]",
@@ -132,6 +134,8 @@ def stated(
     for name in (LOST, DEPTH):
         if name in levels:
             out[name] += embedded.get(TORN, 0.0)
+    if scene.deactivation is not None and PEAK in levels:
+        out[PEAK] = max(out[PEAK], relative_errors(mine, other)[PEAK])
     both = "mesh" if prescribed else "mesh and wear steps"
     out |= {f"{name[:-4]} by {both} [-]": error for name, error in levels.items()}
     out |= {f"{name[:-4]} by the wear steps alone [-]": error for name, error in steps.items()}

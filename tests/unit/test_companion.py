@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from ngwear import companion
-from ngwear.companion import COARSEST, DEPTH, FILE, LOST, PLACES, coarser, reading, run_stated, stated
+from ngwear.companion import COARSEST, DEPTH, FILE, LOST, PEAK, PLACES, coarser, reading, run_stated, stated
 from ngwear.materials import PronySeries
 from ngwear.result_file import read_result
 from ngwear.results import TORN, fingerprint
 from ngwear.run import run
 from ngwear.seen_order import relative_errors
 from ngwear.verify.no_loss import scene
+from ngwear.wear.deactivate import Deactivation
 
 
 @pytest.fixture(scope="module")
@@ -113,6 +114,14 @@ def test_all_that_is_torn_counts_as_error_of_the_area_lost_and_of_the_depth():
     assert found[LOST] == pytest.approx(0.04 + 0.1)
     assert found["area lost in all by mesh and wear steps [-]"] == pytest.approx(0.04)
     assert found[DEPTH] == pytest.approx(0.1)
+
+
+def test_where_elements_are_lost_peaks_err_by_no_less_than_their_last_difference():
+    whole = scene("implicit")
+    losing = replace(whole, wear=replace(whole.wear, remesh="never"), deactivation=Deactivation(depth=0.3))
+    levels = [{PEAK: {"out": [p]}, DEPTH: {"d": [1.0]}} for p in (1.0, 0.9, 1.0)]
+    assert stated(whole, {}, *levels)[PEAK] < 0.1, "differences that turn round are scatter"
+    assert stated(losing, {}, *levels)[PEAK] == pytest.approx(0.1)
 
 
 def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
