@@ -47,8 +47,8 @@ class Accuracy:
     longest_jump : float or None
         Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given. Where pressures change
         slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err
-        by would be the same in a coarser run: no comparison would show it. And a stroke of the cycle is solved with what
-        the others are expected to wear: after long jumps its pressure overshoots where they end the contact.
+        by would be the same in a coarser run: no comparison would show it. And a stroke of the cycle is solved with
+        what the others are expected to wear: after long jumps its pressure overshoots where they end the contact.
     folding_error : float
         Largest relative error of stress that arms of the memory may cause by being folded away [-].
     across : float or None

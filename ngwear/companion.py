@@ -14,12 +14,13 @@ steps tell of the depth themselves is known better; no less than that is stated.
 The estimate cannot see what all three share: the outline's points, the laws and their constants, and steps that the
 scene prescribes (``wear.step`` other than ``"jump"``). Two of these are known separately; they are stated by their
 names and added: arms of the memory that are folded away err by a bounded share of the stress, and prescribed steps by
-what the embedded estimate says of depth and area. What friction tears out is no matter of convergence: elements of half
-the side tear nearly twice as much (``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is
-torn, and comes loose by it, counts as error of the area lost in all; and, as a share of that area, of the depth, which
-is the area over the width that wears. Nor is the peak pressure, at edges that torn elements leave: as at those of a flat
-punch, finer elements only show more of it. No less is stated than what the finer companion differs by. Time has no steps:
-strokes integrate the arms exactly.
+what the embedded estimate says of depth and area. Time has no steps: strokes integrate the arms exactly.
+
+What friction tears out is no matter of convergence: elements of half the side tear nearly twice as much
+(``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is torn, and comes loose by it, counts
+as error of the area lost in all; and, as a share of that area, of the depth, which is the area over the width that
+wears. Nor is the peak pressure, at edges that torn elements leave: as at those of a flat punch, finer elements only
+show more of it. No less is stated there than what the finer companion differs by.
 """
 
 from __future__ import annotations
