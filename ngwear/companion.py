@@ -19,8 +19,9 @@ what the embedded estimate says of depth and area. Time has no steps: strokes in
 What friction tears out is no matter of convergence: elements of half the side tear nearly twice as much
 (``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is torn, and comes loose by it, counts
 as error of the area lost in all; and, as a share of that area, of the depth, which is the area over the width that
-wears. Nor is the peak pressure, at edges that torn elements leave: as at those of a flat punch, finer elements only
-show more of it. No less is stated there than what the finer companion differs by.
+wears. Elements that may be lost are laid once and not refined to the ends of the contact, where pressures peak over few
+of them: finer ones only show more of the peak, and what three runs differ by has not begun to fall. No less is stated
+there than what the finer companion differs by.
 """
 
 from __future__ import annotations
