@@ -2,20 +2,18 @@
 
 A sheet under a roller is mounted and slid to and fro, once with an effect and once without. The one without is asked
 for in two processes: one never had the effect, the other ran the scene with the effect and then took it out
-(``dataclasses.replace``). Both count how often a run calls functions. Then they run in turn, A B B A ..., each on one
-thread. Printed are CPU times, medians of the rounds, and that of the ratios of total times in each round with its 95 %
-interval: a core is not only slowed by other jobs but faster at times, too, so that least times are chance.
+(``dataclasses.replace``). They run in turn, A B B A ..., each on one thread. Printed are CPU times, medians of the
+rounds, and that of the ratios of total times in each round with its 95 % interval: a core is not only slowed
+by other jobs but faster at times, too, so that least times are chance.
 
 Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
        python price_of_absence.py --subject never | removed EFFECT
 """
 
-import cProfile
 import hashlib
 import json
 import os
 import pickle
-import pstats
 import statistics
 import subprocess
 import sys
@@ -27,11 +25,6 @@ from scipy.stats import quantile_test
 
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NGS_NUM_THREADS"), "1")
 KINDS = ("never", "removed")
-HEAD = (
-    "| effect, with / without | unknowns | memory [kB] | assembly [ms] | total [s] | calls, removed / never "
-    "| total, removed over never |"
-)
-COUNT, TIME = "count", "time"
 ROUNDS, ASSEMBLIES = 12, 5
 
 # The modules that belong to each effect alone; wear is the loop itself.
@@ -154,18 +147,8 @@ def assembly(state):
     return statistics.median(seconds)
 
 
-def calls(scene):
-    """How often a run calls ngwear's functions; those of others are called by the collector of garbage, too."""
-    import ngwear
-
-    with cProfile.Profile() as profile:
-        run(scene)
-    place = str(Path(ngwear.__file__).parent)
-    return sum(called[1] for (file, *_), called in pstats.Stats(profile).stats.items() if file.startswith(place))
-
-
 def subject(kind, effect):
-    """Tell facts, then answer every line with a run of the scene without the effect: counted or timed."""
+    """Answer every line with a run of the scene without the effect; the first answers tell facts."""
     present, scene = pair(effect)
     told = {}
     if kind == "removed":
@@ -178,16 +161,13 @@ def subject(kind, effect):
     told["loaded"] = loaded
     tell = sys.stdout
     print(json.dumps(told), file=tell, flush=True)
-    for line in sys.stdin:
-        if line.strip() == COUNT:
-            print(json.dumps(calls(scene)), file=tell, flush=True)
-            continue
+    for _ in sys.stdin:
         seconds, state = run(scene)
         print(json.dumps([seconds, assembly(state), facts(state)["result"]]), file=tell, flush=True)
 
 
 def compare(effect, rounds):
-    """What both processes tell of an effect, the functions that a run calls among it, and CPU seconds of each round."""
+    """What both processes tell of an effect, and their CPU seconds a run."""
     command = [sys.executable, str(Path(__file__).resolve()), "--subject"]
     pipe, environment = subprocess.PIPE, {**os.environ, **ONE_THREAD}
     told, runs, processes = {}, {kind: [] for kind in KINDS}, {}
@@ -197,23 +177,17 @@ def compare(effect, rounds):
                 [*command, kind, effect], stdin=pipe, stdout=pipe, text=True, env=environment
             )
             told[kind] = json.loads(processes[kind].stdout.readline())
-            told[kind]["absent"]["calls"] = answer(processes[kind], COUNT)
         for k in range(rounds):
             for kind in KINDS if k % 2 else reversed(KINDS):
-                runs[kind].append(answer(processes[kind], TIME))
+                processes[kind].stdin.write("run\n")
+                processes[kind].stdin.flush()
+                runs[kind].append(json.loads(processes[kind].stdout.readline()))
     finally:
         for process in processes.values():
             process.stdin.close()
             process.wait()
             process.stdout.close()
     return told, runs
-
-
-def answer(process, line):
-    """What a process says to a line."""
-    process.stdin.write(f"{line}\n")
-    process.stdin.flush()
-    return json.loads(process.stdout.readline())
 
 
 def row(effect, told, runs):
@@ -227,19 +201,18 @@ def row(effect, told, runs):
     kilobytes = [
         (f["bytes at points"] + f["bytes of the state"] + 12 * f["matrix entries"]) / 1024 for f in (present, absent)
     ]
-    called = " / ".join(str(told[kind]["absent"]["calls"]) for kind in KINDS[::-1])
     return (
         f"| {effect} | {present['unknowns']} / {absent['unknowns']} | {kilobytes[0]:.0f} / {kilobytes[1]:.0f} "
         f"| {1e3 * present['assembly']:.1f} / {1e3 * median['never'][1]:.1f} "
-        f"| {present['total']:.2f} / {median['never'][0]:.2f} | {called} | {ratio:.3f} ({spread}) |"
+        f"| {present['total']:.2f} / {median['never'][0]:.2f} | {ratio:.3f} ({spread}) |"
     )
 
 
 def main(arguments):
     """Print the table."""
     rounds = int(arguments[0]) if arguments else ROUNDS
-    print(HEAD)  # noqa: T201
-    print("|---|---|---|---|---|---|---|")  # noqa: T201
+    print("| effect, with / without | unknowns | memory [kB] | assembly [ms] | total [s] | removed over never |")  # noqa: T201
+    print("|---|---|---|---|---|---|")  # noqa: T201
     for effect in arguments[1:] or MODULES:
         print(row(effect, *compare(effect, rounds)), flush=True)  # noqa: T201
 
