@@ -9,7 +9,7 @@
   are above what was measured, and say what the scene's choices are worth.
 - What the hour states of its own errors (``error_estimates``), over what it differs by from the finer elements. What is
   torn grows with every finer mesh, and no coarser one tells: all of it counts as error of the area lost and the depth.
-  The peak of the outward strokes stands at the end of the worn flat, over few elements, and grows with every finer mesh.
+  The outward peak stands at the end of the worn flat, over few elements, and grows with every finer mesh.
 
 Units: mm, N, MPa. Takes an hour and a half, most of it the finer mesh.
 """
