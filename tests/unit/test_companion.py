@@ -13,7 +13,6 @@ from ngwear.results import TORN, fingerprint
 from ngwear.run import run
 from ngwear.seen_order import relative_errors
 from ngwear.verify.no_loss import scene
-from ngwear.wear.deactivate import Deactivation
 
 
 @pytest.fixture(scope="module")
@@ -61,14 +60,12 @@ def test_a_run_states_the_error_of_all_that_is_read_off(finished):
     others = [companion.run_scene(coarser(scene("implicit"), factor), figures=False) for factor in (2.0, 4.0)]
     mine, *theirs = (reading(r.recorder.rows) for r in (result, *others))
     found = relative_errors(mine, *theirs)
+    least = {PEAK: relative_errors(mine, theirs[0])[PEAK]}  # the scene may lose elements
     for name in ("maximum depth", "worn area", "peak pressure", "contact width", "friction force"):
         assert errors[f"{name} by mesh [-]"] == pytest.approx(found[f"{name} [-]"]), name
-    assert errors[PEAK] == pytest.approx(max(found[PEAK], relative_errors(mine, theirs[0])[PEAK])), (
-        "it may lose elements"
-    )
-    for name in ("maximum depth", "worn area", "contact width", "friction force"):
         steps = errors.get(f"{name} by the wear steps alone [-]", 0.0)
-        assert errors[f"{name} [-]"] == pytest.approx(found[f"{name} [-]"] + steps), "its steps are prescribed"
+        known = max(found[f"{name} [-]"] + steps, least.get(f"{name} [-]", 0.0))
+        assert errors[f"{name} [-]"] == pytest.approx(known), "its steps are prescribed"
         assert 0 < found[f"{name} [-]"] < 0.5, name
     for other, name in zip(others, ("companion", "coarsest companion"), strict=True):
         assert result.summary[f"solves of the {name}"] == other.summary["solves"]
@@ -121,11 +118,11 @@ def test_all_that_is_torn_counts_as_error_of_the_area_lost_and_of_the_depth():
 
 
 def test_where_elements_are_lost_peaks_err_by_no_less_than_their_last_difference():
-    whole = scene("implicit")
-    losing = replace(whole, wear=replace(whole.wear, remesh="never"), deactivation=Deactivation(depth=0.3))
+    losing = scene("implicit")
     levels = [{PEAK: {"out": [p]}, DEPTH: {"d": [1.0]}} for p in (1.0, 0.9, 1.0)]
-    assert stated(whole, {}, *levels)[PEAK] < 0.1, "differences that turn round are scatter"
     assert stated(losing, {}, *levels)[PEAK] == pytest.approx(0.1)
+    scatter = stated(replace(losing, deactivation=None), {}, *levels)[PEAK]
+    assert scatter < 0.08, "differences that turn round are scatter"
 
 
 def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
