@@ -9,6 +9,7 @@ import ngsolve as ng
 import numpy as np
 from netgen.libngpy._meshing import NgException
 from numpy.typing import NDArray
+from pyngcore import Array_D_S, Array_I_S
 
 RESIDUAL_TOLERANCE = 1e-6
 REFINE_ABOVE = 1e-8  # relative residual from which a solve is refined: the factorisation does not pivot freely
@@ -52,9 +53,11 @@ class Tangent:
         places = np.sort(np.concatenate([edge, inside, diagonal]))
         places = places[np.concatenate([[True], places[1:] > places[:-1]])]
         self._edge, self._inside = np.searchsorted(places, edge), np.searchsorted(places, inside)
-        self.matrix = ng.la.SparseMatrixd.CreateFromCOO(
-            (places // size).tolist(), (places % size).tolist(), np.zeros(len(places)), size, size
-        )
+        count = len(places)
+        entries = Array_I_S(count), Array_I_S(count), Array_D_S(count)  # given as lists they take longer than all else
+        for array, numbers in zip(entries, (places // size, places % size, 0.0), strict=True):
+            array.NumPy()[:] = numbers
+        self.matrix = ng.la.SparseMatrixd.CreateFromCOO(*entries, size, size)
 
     def fill(self, outline: ng.BaseMatrix, elements: NDArray[np.float64]) -> None:
         """Set the entries; ``elements`` of shape (elements, n, n)."""

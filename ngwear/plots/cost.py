@@ -90,9 +90,9 @@ def _mark_targets(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
         if choice.setting is not None and choice.measured:
             at = study.runs[choice.setting].cpu, max(study.error(choice.setting, study.main), LEAST)
             goals.setdefault(at, []).append(f"{100 * choice.target:g} %")
-    for at, names in goals.items():
+    for k, (at, names) in enumerate(goals.items()):
         axis.annotate(
-            f"for {', '.join(names)}", at, xytext=(10, -16), textcoords="offset points", fontsize=9,
+            f"for {', '.join(names)}", at, xytext=(10, -16 - 14 * k), textcoords="offset points", fontsize=9,
             arrowprops={"arrowstyle": "-", "lw": 0.6},
         )  # fmt: skip
 
