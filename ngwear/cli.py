@@ -36,7 +36,9 @@ def _parser() -> argparse.ArgumentParser:
     verify = commands.add_parser("verify", help="compare with references that others derived")
     verify.add_argument("cases", nargs="*", metavar="CASE")
     verify.add_argument("--json", action="store_true")
-    verify.set_defaults(do=_verify)
+    keeps = "folder in which torn_seal keeps its runs, hours in all, to go on with; a new one for changed code"
+    verify.add_argument("--out", type=Path, metavar="DIR", help=keeps)
+    verify.set_defaults(do=_verify, again="a case begins anew, torn_seal goes on if it was given --out")
     explain = commands.add_parser("explain", help="say what a scene simulates and what it leaves out")
     explain.add_argument("scene", type=Path, metavar="SCENE.toml")
     explain.add_argument("--json", action="store_true")
@@ -160,7 +162,7 @@ def _verify(options: argparse.Namespace) -> int:
     with tqdm(chosen(options.cases or None), unit="case", disable=not sys.stderr.isatty(), leave=False) as bar:
         for name in bar:
             bar.set_description(name)
-            for check in checks_of(name):
+            for check in checks_of(name, options.out):
                 passed = passed and check.passed
                 said = opening + json.dumps(check.as_dict(), indent=2) if options.json else str(check)
                 bar.write(said, file=sys.stdout)

@@ -170,7 +170,10 @@ class _Bar:
     """Progress on the terminal: mounting in per cent, then strokes with depth and jump."""
 
     def __init__(self, scene: Scene, *, shown: bool) -> None:
-        self._scene, self._shown, self._bar = scene, shown, None
+        from tqdm import tqdm
+
+        self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
+        self._scene, self._bar = scene, None
 
     def __enter__(self) -> _Bar:
         return self
@@ -179,28 +182,17 @@ class _Bar:
         if self._bar is not None:
             self._bar.close()
 
-    def _make(self, **kwargs: Any) -> Any:
-        from tqdm import tqdm  # holds a semaphore, which a companion that is stopped would leave behind
-
-        return tqdm(dynamic_ncols=True, **kwargs)
-
     def mounting(self, fraction: float) -> None:
-        if not self._shown:
-            return
         if self._bar is None:
             self._bar = self._make(total=100, desc="mounting", unit="%")
         self._bar.update(round(100 * fraction) - self._bar.n)
 
     def begin(self, state: State) -> None:
-        if not self._shown:
-            return
         if self._bar is not None:
             self._bar.close()
         self._bar = self._make(total=self._scene.program.strokes, initial=state.strokes, desc="wear", unit="stroke")
 
     def update(self, state: State, recorder: Recorder) -> None:
-        if self._bar is None:
-            return
         row = recorder.rows[-1]
         self._bar.update(state.strokes - self._bar.n)
         self._bar.set_postfix_str(

@@ -209,7 +209,13 @@ def one_thread() -> Iterator[None]:
 
 
 def end_with_parent() -> None:
-    """Let a worker end when the process that feeds it is killed; else it would wait for work for ever."""
+    """Let a worker end when the process that feeds it is killed; else it would wait for work for ever.
+
+    Its progress bars, shown or not, lock by thread: tqdm's own lock is a semaphore, which an ended worker leaves.
+    """
+    from tqdm import tqdm
+
+    tqdm.set_lock(threading.RLock())
     parent = parent_process()
 
     def watch() -> None:

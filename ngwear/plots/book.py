@@ -15,6 +15,8 @@ IN_ALL = "area lost in all [mm^2]"
 CAUSES = {"wear": "#9db7cc", "tearing": "#222222", "distortion": "#d98324", "coming loose": "#7f5fa8"}
 AREAS = CAUSES | {"merging": "#5e8c61"}  # walls of pits whose ends wear has made one: a little either way
 
+ELEMENTS = [0, 2, 5, *(digit * 10**power for power in range(1, 7) for digit in (1, 2, 5))]  # marked on the axis
+
 
 def has_book(result: ResultFile) -> bool:
     """Whether a run has booked what it has lost by cause."""
@@ -23,6 +25,8 @@ def has_book(result: ResultFile) -> bool:
 
 def book_figure(result: ResultFile) -> Figure:
     """Area lost by each cause, one upon the other, by each but wear alone, and the number of elements lost."""
+    from matplotlib.ticker import FixedLocator
+
     series = result.series
     metres = series["sliding distance [mm]"] / 1e3
     figure, (area, small, count) = new_figure(3, (1.5, 1.0, 1.0), size=(8, 9))
@@ -44,7 +48,9 @@ def book_figure(result: ResultFile) -> Figure:
         count.step(metres, series[column], where="post", color=colour, lw=1.5, label=f"by {cause}")
     count.set_ylabel("elements lost [-]")
     count.set_yscale("symlog", linthresh=10.0)
+    count.yaxis.set_major_locator(FixedLocator(ELEMENTS))
+    count.yaxis.set_major_formatter("{x:.0f}")
     count.set_ylim(bottom=0)
     count.set_xlabel("sliding distance [m]")
-    count.legend(loc="center right")
+    count.legend()
     return figure

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from importlib import import_module
+from pathlib import Path
 
 from ngwear.errors import SceneError
 from ngwear.verify.base import Check
@@ -49,6 +50,8 @@ CASES: dict[str, str] = {
     "rod_seal_filled": "ngwear.verify.rod_seal_filled",
 }
 
+RESUMED = ("torn_seal",)  # with runs of a quarter of an hour and more
+
 __all__ = ["CASES", "Check", "checks_of", "chosen", "verify"]
 
 
@@ -72,6 +75,10 @@ def chosen(names: Iterable[str] | None = None) -> list[str]:
     return out
 
 
-def checks_of(name: str) -> Iterator[Check]:
-    """Run a case; yield its checks as they are made."""
-    yield from import_module(CASES[name]).run()
+def checks_of(name: str, folder: Path | None = None) -> Iterator[Check]:
+    """Run a case; yield its checks as they are made. With a folder a case that takes hours goes on with what is there.
+
+    Errors as ``run``, if the folder cannot be used.
+    """
+    run = import_module(CASES[name]).run
+    yield from run(folder / name) if folder is not None and name in RESUMED else run()

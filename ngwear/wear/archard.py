@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,26 +40,35 @@ def sampled(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
     n = len(contour)
     ways = np.concatenate([[0.0], np.cumsum(np.tile(contour.lengths, 2))])
 
-    def way(t: Any) -> Any:
+    def way(t: Array) -> Array:
         return np.interp(t, np.arange(2 * n + 1), ways)
 
     at_node = amount / profile.weight
     depth, covered = np.zeros(n), np.zeros(n, dtype=bool)
-    for i, j in profile.edges:
-        a, b = profile.t[i], profile.t[j]
-        b = b if b > a else b + n
-        covered[np.arange(math.floor(a + 1e-9), math.ceil(b - 1e-9)) % n] = True
-        points = np.arange(math.ceil(a - 1e-9), math.floor(b + 1e-9) + 1)
-        if len(points) == 0 or at_node[i] == at_node[j] == 0:
-            continue
-        # Linear along the mesh edge. Shared by integrals instead, a dent would take its neighbours' wear and deepen.
-        part = (way(points) - way(a)) / (way(b) - way(a))
-        depth[points % n] = (1 - part) * at_node[i] + part * at_node[j]
+    a, b = profile.t[profile.edges].T
+    b = np.where(b > a, b, b + n)
+    segments, _ = _spans(np.floor(a + 1e-9), np.ceil(b - 1e-9))
+    covered[segments % n] = True
+    points, edge = _spans(np.ceil(a - 1e-9), np.floor(b + 1e-9) + 1)
+    first, last = at_node[profile.edges[edge]].T
+    # Linear along the mesh edge. Shared by integrals instead, a dent would take its neighbours' wear and deepen.
+    start = way(a)[edge]
+    part = (way(points) - start) / (way(b)[edge] - start)
+    bears = (first != 0) | (last != 0)
+    depth[points[bears] % n] = ((1 - part) * first + part * last)[bears]
     half = 0.5 * contour.lengths * covered
     share = depth * (half + np.roll(half, 1))
     if amount.any() and not share.any():  # a contact between two points of the outline
         np.add.at(share, np.rint(profile.t).astype(int) % n, amount)
     return share
+
+
+def _spans(start: Array, end: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Whole numbers from each start up to before its end, one after the other, and whose they are."""
+    count = np.maximum(end - start, 0).astype(int)
+    whose = np.repeat(np.arange(len(count)), count)
+    within = np.arange(len(whose)) - np.repeat(np.cumsum(count) - count, count)
+    return start.astype(int)[whose] + within, whose
 
 
 def critical_distance(element: float, specific_wear_rate: float, plane_strain_modulus: float) -> float:

@@ -2,9 +2,9 @@
 
 A sheet under a roller is mounted and slid to and fro, once with an effect and once without. The one without is asked
 for in two processes: one never had the effect, the other ran the scene with the effect and then took it out
-(``dataclasses.replace``). They run in turn, A B B A ..., each on one thread. Printed are CPU times, medians of the
-rounds, and that of the ratios of total times in each round with its 95 % interval: a core is not only slowed
-by other jobs but faster at times, too, so that least times are chance.
+(``dataclasses.replace``). In a round both run at once, each on one thread of a core of its own, and once more with
+cores exchanged: what other tenants of the machine do to its speed, up and down, they do to both. Printed are CPU times
+of a run, medians of the rounds, and that of the ratios of both runs' times in each round with its 95 % interval.
 
 Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
        python price_of_absence.py --subject never | removed EFFECT
@@ -148,8 +148,9 @@ def assembly(state):
 
 
 def subject(kind, effect):
-    """Answer every line with a run of the scene without the effect; the first answers tell facts."""
+    """Answer every line, a core's number, with a run of the scene without the effect; the first answers tell facts."""
     present, scene = pair(effect)
+    cores = sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_setaffinity") else []
     told = {}
     if kind == "removed":
         seconds, state = run(present)
@@ -161,7 +162,9 @@ def subject(kind, effect):
     told["loaded"] = loaded
     tell = sys.stdout
     print(json.dumps(told), file=tell, flush=True)
-    for _ in sys.stdin:
+    for line in sys.stdin:
+        if cores:
+            os.sched_setaffinity(0, {cores[int(line) % len(cores)]})
         seconds, state = run(scene)
         print(json.dumps([seconds, assembly(state), facts(state)["result"]]), file=tell, flush=True)
 
@@ -177,11 +180,13 @@ def compare(effect, rounds):
                 [*command, kind, effect], stdin=pipe, stdout=pipe, text=True, env=environment
             )
             told[kind] = json.loads(processes[kind].stdout.readline())
-        for k in range(rounds):
-            for kind in KINDS if k % 2 else reversed(KINDS):
-                processes[kind].stdin.write("run\n")
-                processes[kind].stdin.flush()
-                runs[kind].append(json.loads(processes[kind].stdout.readline()))
+        for _ in range(rounds):
+            for cores in ((0, 1), (1, 0)):
+                for kind, core in zip(KINDS, cores, strict=True):
+                    processes[kind].stdin.write(f"{core}\n")
+                    processes[kind].stdin.flush()
+                for kind in KINDS:
+                    runs[kind].append(json.loads(processes[kind].stdout.readline()))
     finally:
         for process in processes.values():
             process.stdin.close()
@@ -194,7 +199,8 @@ def row(effect, told, runs):
     """A line of the table."""
     present, absent = told["removed"]["present"], told["never"]["absent"]
     median = {kind: [statistics.median(r[i] for r in runs[kind]) for i in (0, 1)] for kind in KINDS}
-    ratios = [a[0] / b[0] for a, b in zip(runs["removed"], runs["never"], strict=True)]
+    both_cores = {kind: [a[0] + b[0] for a, b in zip(runs[kind][::2], runs[kind][1::2], strict=True)] for kind in KINDS}
+    ratios = [a / b for a, b in zip(both_cores["removed"], both_cores["never"], strict=True)]
     ratio = statistics.median(ratios)
     interval = quantile_test(ratios, q=ratio).confidence_interval()  # none of fewer than six
     spread = f"{interval.low:.3f} to {interval.high:.3f}"

@@ -74,6 +74,7 @@ def test_levels_are_run_until_one_states_less(tmp_path, coarse_first):
     assert told["elements"] == json.loads((tmp_path / LEVELS / f"{before:g}" / "summary.json").read_text())["elements"]
 
 
+@pytest.mark.slow
 def test_interrupted_it_goes_on_where_it_was(tmp_path, coarse_first, monkeypatch):
     whole = run_to_error(to(ASKED), out=tmp_path / "whole").summary
     steps, real = [0], Stepper.advance

@@ -2,11 +2,14 @@
 
 import subprocess
 import sys
+from dataclasses import replace
+from functools import partial
 
 import pytest
 
 from ngwear.errors import SceneError
-from ngwear.verify import CASES, verify
+from ngwear.run import run as run_scene
+from ngwear.verify import CASES, checks_of, no_loss, torn_seal, verify
 from ngwear.verify.base import Check
 
 SLOW = (
@@ -24,6 +27,9 @@ SLOW = (
     "indentation",
     "remeshed_memory",
     "sliding_roller",
+    "memory",
+    "worn_cylinder",
+    "hunter",
 )
 QUICK = tuple(case for case in CASES if case not in SLOW)
 # Missed, with the reason in the case's docstring; a check that comes to pass must leave this list.
@@ -45,6 +51,25 @@ def test_case_meets_its_reference(case):
     }
     assert checks, f"{case} checks nothing"
     assert set(told) == MISSED.get(case, set()), f"{case}: {told}"
+
+
+def test_an_hour_of_the_torn_seal_goes_on_after_a_kill(tmp_path, monkeypatch):
+    scene = no_loss.scene("implicit")
+    monkeypatch.setattr(torn_seal, "_scene", lambda name: replace(scene, program=replace(scene.program, strokes=4)))
+    monkeypatch.setattr(torn_seal, "sweep", lambda hour, names: [hour(name) for name in names])
+
+    def kill(state):
+        if state.strokes == 2:
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr(torn_seal, "run_scene", partial(run_scene, on_step=kill))
+    with pytest.raises(KeyboardInterrupt):
+        list(checks_of("torn_seal", tmp_path))
+    strokes = []
+    monkeypatch.setattr(torn_seal, "run_scene", partial(run_scene, on_step=lambda state: strokes.append(state.strokes)))
+    (place,) = (tmp_path / "torn_seal").iterdir()
+    torn_seal._hour(place.parent, place.name)
+    assert strokes == [4]
 
 
 def test_unknown_case_is_refused_and_the_known_ones_named():
