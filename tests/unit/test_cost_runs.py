@@ -142,7 +142,8 @@ def test_files_of_a_study(studied):
     assert {q.split(" [")[0] for q in found.study.quantities} == {
         *("maximum depth", "worn area", "peak pressure", "roller contact width", "roller friction force")
     }
-    force = [run.values["roller friction force [N/mm]"] for run in found.study.runs.values()]
+    rungs = [run for k in range(len(found.study.ladders)) for run in found.study.rungs(k).values()]
+    force = [run.values["roller friction force [N/mm]"] for run in rungs]  # choices, too, are run: which, seconds tell
     assert force == pytest.approx([0.05] * len(force), rel=1e-3), "mu F"
 
 
