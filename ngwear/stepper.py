@@ -92,7 +92,7 @@ class Stepper:
             self._losses.begin(state)
         for i, stroke in enumerate(scene.program.cycle):
             stage.begin(problem.state.vec.FV().NumPy())
-            state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.125)))
+            state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5)))
             state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
         refuse_idle_contacts(state)

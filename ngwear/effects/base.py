@@ -104,6 +104,6 @@ class VolumeTerm(Term):
     def response(self, strain: Array, *, tangent: bool) -> tuple[Array, Array | None]:
         """Stress conjugate to the strain of ``fields.material_points`` and, if asked for, its derivative.
 
-        Shapes (..., n) and (..., n, n), per reference volume; not a number where the strain is not admissible
-        (J <= 0).
+        Shapes (..., n) and (..., n, n), symmetric, per reference volume; not a number where the strain is not
+        admissible (J <= 0).
         """

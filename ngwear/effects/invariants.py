@@ -38,7 +38,7 @@ class Invariants(abc.ABC):
     @staticmethod
     def of(strain: Array) -> Invariants:
         """Invariants at strains of a section, shape (..., 6), or of a solid, shape (..., 10)."""
-        parts = np.ascontiguousarray(np.moveaxis(strain, -1, 0))
+        parts = np.array(np.moveaxis(strain, -1, 0), order="C")  # a copy of its own
         return Section(parts) if len(parts) == 6 else Solid(parts)
 
     @abc.abstractmethod

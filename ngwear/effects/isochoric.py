@@ -43,7 +43,8 @@ def respond(
     # Second derivatives: products of slopes here, the invariants' own second derivatives after.
     twice = (f1 * 10 / 9 * i1 + f2 * 28 / 9 * i2) / (j * j) + by_jj
     mixed = [d1 * a_j * at.g1[k] + d2 * b_j * at.g2[k] + 0.5 * twice * gj[k] for k in components]
-    slope = np.zeros((*strain.shape, strain.shape[-1]))
+    size = strain.shape[-1]
+    slope = np.moveaxis(np.zeros((size, size, *strain.shape[:-1])), (0, 1), (-2, -1))  # components apart in memory
     own = at.curvature(f1, f2, fj)
     curved = np.any(d11) or np.any(d12) or np.any(d22)
     b1 = [a * at.g1[k] + a_j * i1 * gj[k] for k in components] if curved else []

@@ -43,7 +43,7 @@ class Ripples:
         self._contact, self._unknowns = contact, unknowns
         self._smooth = ng.GridFunction(unknowns.state[contact.pressure_name].space)
         along = ng.specialcf.tangential(2)
-        ahead = along + ng.Grad(unknowns.u).Trace() * along
+        ahead = along + ng.Grad(unknowns.state[DISPLACEMENT]) * along  # its sign has no tangent
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
         way = ng.IfPos(ahead[0] * tangent[0] + ahead[1] * tangent[1], 1.0, -1.0)
         shift = SHIFT * contact.lengths(unknowns.body) * way

@@ -30,6 +30,7 @@ SOFTNESS = (1.0, 10.0)  # of the contacts, one after the other
 SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element
 NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept
+SHRINKS = 0.3  # times the correction before: the next, if the tangent is to be kept on
 EXACT = 1e-2  # of the residual left by a correction: its tangent is as good as Newton's own
 PATIENCE = 8  # iterations within which the smallest correction must halve
 
@@ -123,7 +124,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         if options.reuse:
             kept = left <= EXACT
         else:
-            kept = not kept and _nearly_there(report.corrections, NEARLY * options.tolerance * size)
+            kept = _will_do(report.corrections, NEARLY * options.tolerance * size, kept=kept)
         if not kept:
             solver = problem.tangent()
         if solver is None:
@@ -170,13 +171,17 @@ def _settled(
     return bool(left * moved <= tolerance * highest or highest == 0.0)
 
 
-def _nearly_there(corrections: list[float], mark: float) -> bool:
-    """Whether the last correction is the first so small that the tangent at hand will do once more.
+def _will_do(corrections: list[float], mark: float, *, kept: bool) -> bool:
+    """Whether the tangent at hand will do once more.
 
-    It differs from Newton's own by about the last correction over the size of an element in contact, and saves
-    assembly and factorisation, four fifths of an iteration.
+    It will after the first correction so small that it differs from Newton's own by little, about that correction over
+    the size of an element in contact, and then as long as corrections shrink: assembly and factorisation are four
+    fifths of an iteration.
     """
-    return len(corrections) > 1 and corrections[-1] <= mark < corrections[-2]
+    if len(corrections) < 2 or corrections[-1] > mark:
+        return False
+    first = not kept and corrections[-2] > mark
+    return first or corrections[-1] <= SHRINKS * corrections[-2]
 
 
 def _stalled(corrections: list[float]) -> bool:

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
-from typing import Any
+from functools import lru_cache
 
 import ngsolve as ng
 import numpy as np
 from netgen.libngpy._meshing import NgException
 from numpy.typing import NDArray
+from threadpoolctl import ThreadpoolController
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns, VolumeTerm
 from ngwear.equilibrium.linear import DirectSolver, Tangent
@@ -159,9 +160,15 @@ class Problem:
         for term in self.terms:
             term.commit(strain)
 
-    def threads(self) -> AbstractContextManager[Any]:
-        """Context of a solve: all cores if the problem is large enough to gain by them, else one."""
-        return ng.TaskManager() if self.space.ndof >= THREADED_FROM else nullcontext()
+    @contextmanager
+    def threads(self) -> Iterator[None]:
+        """Context of a solve: all cores if the problem is large enough to gain by them, else one; BLAS has one.
+
+        Its products here are too small to share, and threads that wait for more would take a companion's core.
+        """
+        large = self.space.ndof >= THREADED_FROM
+        with _blas().limit(limits=1), ng.TaskManager() if large else nullcontext():
+            yield
 
     def residual(self, out: ng.BaseVector) -> None:
         """Write the residual at the present state, zero on prescribed unknowns."""
@@ -212,3 +219,9 @@ class Problem:
         if not self.solver.factorise():
             self.solver = None
         return self.solver
+
+
+@lru_cache(maxsize=1)
+def _blas() -> ThreadpoolController:
+    """The BLAS of NumPy and SciPy; PARDISO's threads are NGSolve's matter."""
+    return ThreadpoolController().select(internal_api="openblas")

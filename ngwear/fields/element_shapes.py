@@ -37,6 +37,8 @@ class Cells:
         Whether a point counts.
     quads : array of bool, shape (elements,)
         Whether an element is a quadrilateral.
+    kinds : list of arrays of int
+        Numbers of the elements that share their shape functions, kind by kind.
 
     Raises
     ------
@@ -55,7 +57,11 @@ class Cells:
         # Shape functions depend on an element's type and on the order of its vertex numbers only.
         ranks = np.argsort(_filled(vertices, mesh.nv), axis=1).tolist()
         self._kinds = [(n, *rank) for n, rank in zip(corners, ranks, strict=True)]
-        self._examples = {kind: i for i, kind in reversed(list(enumerate(self._kinds)))}
+        members: dict[tuple[int, ...], list[int]] = {}
+        for i, kind in enumerate(self._kinds):
+            members.setdefault(kind, []).append(i)
+        self._examples = {kind: elements[0] for kind, elements in members.items()}
+        self.kinds = [np.array(elements) for elements in members.values()]
         rules = {n: ng.IntegrationRule(known[n], order) for n in sorted(set(corners))}
         sizes = {n: len(rule.points) for n, rule in rules.items()}
         most = max(sizes.values())

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ngwear.fields.element_shapes import Cells
 from ngwear.fields.kinematics import Kinematics
+from ngwear.fields.reference_elements import ReferenceElements
 from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
@@ -59,11 +60,13 @@ class MaterialPoints:
         self.strains = dim * dim + (dim == 2) + 1
         self._points = self._cells.points
         self._stressed = stressed
-        moves, self._shapes, self._slopes = self._cells.shapes(moving)
-        stresses, self._stress_shapes, _ = self._cells.shapes(stressed)
+        moves, shapes, slopes = self._cells.shapes(moving)
+        stresses, stress_shapes, _ = self._cells.shapes(stressed)
         component = (displacement.stop - displacement.start) // dim
         moved = [displacement.start + i * component + moves for i in range(dim)]
         self.unknowns = np.concatenate([*moved, pressure.start + stresses], axis=1)
+        arrays, hoop = (shapes, slopes, stress_shapes, self._cells.kinds), kinematics.axisymmetric
+        self._elements = ReferenceElements(*arrays, strains=self.strains, hoop=hoop)
         self._measure()
 
     def follow(self) -> None:
@@ -73,40 +76,28 @@ class MaterialPoints:
 
     def _measure(self) -> None:
         self._moves = self.body.moves
-        elements, points = self._slopes.shape[:2]
-        shape, dim = (elements, points), self._dim
+        shape, dim = self._cells.weights.shape, self._dim
         jacobian = np.asarray(ng.specialcf.JacobianMatrix(dim)(self._points)).reshape(*shape, dim, dim)
-        slopes = self._slopes @ np.linalg.inv(jacobian)
-        weight = np.broadcast_to(np.asarray(self.kinematics.weight(self._points)).reshape(-1), (elements * points,))
+        weight = np.broadcast_to(np.asarray(self.kinematics.weight(self._points)).reshape(-1), (shape[0] * shape[1],))
         self._sizes = self._cells.weights * np.abs(np.linalg.det(jacobian))
         self.volumes = self._sizes * weight.reshape(shape)
-        n = self._slopes.shape[2]
-        B = np.zeros((*shape, self.strains, self.unknowns.shape[1]))
-        for i in range(dim):
-            for j in range(dim):
-                B[:, :, dim * i + j, i * n : (i + 1) * n] = slopes[..., j]
         self.radius: Array | None = None
         if self.kinematics.axisymmetric:
             self.radius = np.asarray(ng.y(self._points)).reshape(shape)
-            B[:, :, 4, n : 2 * n] = self._shapes / self.radius[..., None]
-        B[:, :, -1, dim * n :] = self._stress_shapes
-        self._B = B
-        self._flat = B.reshape(elements, points * self.strains, -1)
-        weighted = (B * self.volumes[..., None, None]).reshape(self._flat.shape)
-        self._transposed = np.ascontiguousarray(weighted.swapaxes(1, 2))  # times the volumes
+        self._elements.place(np.linalg.inv(jacobian), self.volumes, self.radius)
 
     def strain(self, vector: Array) -> Array:
         """Strains of a vector of unknowns, shape (elements, points, strains)."""
-        return (self._flat @ vector[self.unknowns][:, :, None]).reshape(*self.volumes.shape, self.strains)
+        return self._elements.strain(vector[self.unknowns])
 
     def forces(self, stress: Array) -> Array:
         """Element vectors of a stress conjugate to the strain per reference volume; shape (elements, unknowns)."""
-        return (self._transposed @ stress.reshape(len(stress), -1, 1))[:, :, 0]
+        return self._elements.forces(stress)
 
     @property
     def nbytes(self) -> int:
         """Memory of what is kept at the points [bytes]."""
-        return self._B.nbytes + self._transposed.nbytes + self.volumes.nbytes + self.unknowns.nbytes
+        return self._elements.nbytes + self.volumes.nbytes + self.unknowns.nbytes
 
     @property
     def places(self) -> Array:
@@ -146,4 +137,4 @@ class MaterialPoints:
 
     def stiffness(self, tangent: Array) -> Array:
         """Element matrices, shape (elements, n, n), of d stress / d strain, (elements, points, strains, strains)."""
-        return self._transposed @ (tangent @ self._B).reshape(self._flat.shape)
+        return self._elements.stiffness(tangent)
