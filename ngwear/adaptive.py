@@ -25,6 +25,7 @@ from ngwear.files import CHECKPOINT, COMPLETED, OutFolder
 from ngwear.results import fingerprint
 from ngwear.run import Result
 from ngwear.scene import Scene
+from ngwear.workers import Worker
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
 FIRST, AT = 8.0, 0.01  # elements across of the first level when so much error is asked for
@@ -53,14 +54,20 @@ def next_across(across: float, stated: float | None, error: float) -> float | No
 
 
 def run_to_error(
-    scene: Scene, *, out: Path | str, resume: bool = False, progress: bool = False, throw: bool = True
+    scene: Scene,
+    *,
+    out: Path | str,
+    resume: bool = False,
+    progress: bool = False,
+    throw: bool = True,
+    worker: Worker | None = None,
 ) -> Result:
     """Run a scene whose ``accuracy.error`` is given on as fine a level as that takes.
 
     Earlier levels stay in the folder's ``levels``. If the finest there is states more than was asked for, its summary
     warns. ``summary["levels"]`` tells each level's error and seconds.
 
-    Parameters and errors as ``run``.
+    Parameters and errors as ``run``; the first level's companions run in ``worker``, if it is given.
     """
     folder, error = OutFolder(Path(out), CHECKPOINT, resume=resume), scene.accuracy.error
     done = _earlier(folder, scene, resume=resume)
@@ -69,7 +76,8 @@ def run_to_error(
         level = at_level(scene, across)
         _hand_down(folder, level, done)
         told = _Told(done, across, error)
-        result = run_stated(level, out=out, resume=resume, progress=progress, throw=throw, told=told, enough=error)
+        how = {"resume": resume, "progress": progress, "throw": throw, "told": told}
+        result, worker = run_stated(level, out=out, enough=error, worker=worker, **how), None
         finer = next_across(across, told.mine.get(DEPTH), error) if result.status == COMPLETED else None
         if finer is None:
             return result

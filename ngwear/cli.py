@@ -96,6 +96,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    from ngwear.workers import Worker
+
+    worker = None if options.alone else Worker("ngwear.companion")  # loads while this process does
     from ngwear.files import COMPLETED
     from ngwear.scenefile import read_scene
     from ngwear.sliding.scene import PinScene
@@ -107,14 +110,19 @@ def _run(options: argparse.Namespace) -> int:
     if isinstance(scene, PinScene):
         from ngwear.run_pin import run_pin
 
+        if worker is not None:
+            worker.end()
         summary = run_pin(scene, **how)
+    elif options.alone:
+        from ngwear.run import run
+
+        summary = run(scene, **how, throw=False).summary
     else:
         from ngwear.companion import run_stated
-        from ngwear.run import run
 
         if scene.accuracy.error is not None:
             from ngwear.adaptive import run_to_error as run_stated
-        summary = (run if options.alone else run_stated)(scene, **how, throw=False).summary
+        summary = run_stated(scene, **how, throw=False, worker=worker).summary
     if summary["status"] != COMPLETED:
         print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
         print(f"ngwear: what was computed until then is in {options.out}", file=sys.stderr)

@@ -31,7 +31,6 @@ import os
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +43,7 @@ from ngwear.run import Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
 from ngwear.seen_order import Reading, relative_errors
-from ngwear.sweep import end_with_parent, one_thread
+from ngwear.workers import Worker
 
 COARSER = 2.0
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
@@ -156,15 +155,17 @@ def run_stated(
     figures: bool = True,
     told: Callable[[dict[str, Any]], None] | None = None,
     enough: float | None = None,
+    worker: Worker | None = None,
 ) -> Result:
     """Run a scene and, beside it in a second process, its companions; ``summary["error estimates"]`` is from all.
 
     Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Where the first
     companion shows an error of the greatest depth of no more than ``enough``, taken as of first order, the coarsest is
     stopped; what it has taken until then is not told. Companions that give up lose nothing: without the coarsest,
-    errors are taken as of first order; without both, those of the mesh are not known. The summary then warns.
+    errors are taken as of first order; without both, those of the mesh are not known. The summary then warns. They run
+    in ``worker``, which ends with them, or in one that begins here.
     """
-    companions = _Companions(scene, Path(out), enough)
+    companions = _Companions(scene, Path(out), enough, worker)
 
     def state(recorder: Recorder, summary: dict[str, Any]) -> None:
         companions.state(recorder, summary)
@@ -189,21 +190,19 @@ class _Companions:
     Those of an earlier process are taken from there.
     """
 
-    def __init__(self, scene: Scene, folder: Path, enough: float | None) -> None:
-        self.scene, self.enough, self.process = scene, enough, None
+    def __init__(self, scene: Scene, folder: Path, enough: float | None, worker: Worker | None) -> None:
+        self.scene, self.enough, self.worker = scene, enough, worker
         self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
 
     def __enter__(self) -> _Companions:
         if any(left_by(*run) is None for run in self.runs):
-            with one_thread():
-                self.process = get_context("spawn").Process(target=_leave, args=(self.runs,), daemon=True)
-                self.process.start()
+            self.worker = self.worker or Worker(__name__)
+            self.worker.do(_leave, self.runs)
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self.process is not None and self.process.is_alive():
-            self.process.terminate()
-            self.process.join()
+        if self.worker is not None:
+            self.worker.end()
 
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Wait for them, and put the estimates into the summary of the run."""
@@ -230,7 +229,7 @@ class _Companions:
 
     def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for what one of them leaves."""
-        while self.process is not None and self.process.is_alive() and left_by(scene, file) is None:
+        while self.worker is not None and self.worker.alive and left_by(scene, file) is None:
             time.sleep(POLL)
         return left_by(scene, file) or {"gave up": "it ended without a word"}
 
@@ -246,7 +245,6 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
 
 def _leave(runs: list[tuple[Scene, Path]]) -> None:
     """Run scenes, their readings or failures into their files, each written whole, unless they are there."""
-    end_with_parent()
     for scene, file in runs:
         if left_by(scene, file) is not None:
             continue

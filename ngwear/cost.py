@@ -27,8 +27,9 @@ from ngwear.errors import SceneError
 from ngwear.files import GAVE_UP, OutFolder
 from ngwear.scene import Scene
 from ngwear.sliding.scene import PinScene
-from ngwear.sweep import one_thread_pool, sweep
+from ngwear.sweep import sweep
 from ngwear.units import UNITS
+from ngwear.workers import one_thread_pool
 
 RUNS = "runs"
 CSV, JSON, PNG = "cost.csv", "cost.json", "cost.png"

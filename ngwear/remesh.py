@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -69,22 +71,31 @@ def remesh(state: State, contour: Contour | None = None) -> None:
 
 def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
     """Go on with another stage: the phases' vectors on it are given, what stands on the outline is carried over."""
-    before, after = state.contour, stage.body.contour
+    values = _Moved(state.contour, stage.body.contour)
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
         if phase.pressure is not None:
-            phase.pressure = _moved_values(before, after, phase.pressure)
-            phase.mean = _moved_values(before, after, phase.mean)
+            phase.pressure, phase.mean = values(phase.pressure), values(phase.mean)
     if state.depths is not None:
-        state.depths = _moved_values(before, after, state.depths)
+        state.depths = values(state.depths)
     state.stage = stage
 
 
-def _moved_values(before: Contour, after: Contour, values: Array) -> Array:
+class _Moved:
     """Values at the points of one outline, their last axis, at those of another with almost the same shape."""
-    from shapely import LinearRing, line_locate_point, points
 
-    ways = np.concatenate([[0.0], np.cumsum(before.lengths)])
-    found = line_locate_point(LinearRing(before.points), points(after.points))
-    closed = np.concatenate([values, values[..., :1]], axis=-1)
-    return np.apply_along_axis(lambda row: np.interp(found, ways, row), -1, closed)
+    def __init__(self, before: Contour, after: Contour) -> None:
+        self._before, self._after = before, after
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        """Ways along the outline before: of its points, and of those after."""
+        from shapely import LinearRing, line_locate_point, points
+
+        ways = np.concatenate([[0.0], np.cumsum(self._before.lengths)])
+        return ways, line_locate_point(LinearRing(self._before.points), points(self._after.points))
+
+    def __call__(self, values: Array) -> Array:
+        ways, found = self._places
+        closed = np.concatenate([values, values[..., :1]], axis=-1)
+        return np.apply_along_axis(lambda row: np.interp(found, ways, row), -1, closed)

@@ -40,9 +40,11 @@ BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made on
 
 def depths(before: Contour, after: Contour) -> Array:
     """Distance of each point of the unworn outline from the worn one [mm], shape (n,)."""
-    from shapely import LinearRing, distance, points
+    from shapely import STRtree, linestrings, points
 
-    return np.asarray(distance(points(before.points), LinearRing(after.points)))
+    segments = STRtree(linestrings(np.stack([after.points, np.roll(after.points, -1, axis=0)], axis=1)))
+    _, found = segments.query_nearest(points(before.points), return_distance=True, all_matches=False)
+    return found
 
 
 def measured_at(scene: Scene) -> Contour:

@@ -8,21 +8,19 @@ import io
 import os
 import pickle
 import sys
-import threading
 import traceback
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
-from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any
 
 from ngwear.errors import ResultError, SceneError
 from ngwear.files import OutFolder
+from ngwear.workers import one_thread_pool
 
-ONE_THREAD = ("NGS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS")
 IMPORTABLE = "define it at the top of a module; functools.partial(function, fixed) keeps arguments that do not vary"
 
 
@@ -181,48 +179,6 @@ def _in_processes(function: Any, points: list, waiting: Iterable[int], workers: 
                 again = _feed(pool, function, points, deque([i]), 1, keep)
             for _, error in again:
                 keep(i, Failure.of(error))
-
-
-@contextmanager
-def one_thread_pool(workers: int) -> Iterator[Executor]:
-    """Spawned workers of one thread each."""
-    with (
-        one_thread(),
-        ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=end_with_parent) as pool,
-    ):
-        yield pool
-
-
-@contextmanager
-def one_thread() -> Iterator[None]:
-    """Let processes that begin within have one thread each: libraries read that from the environment as they load."""
-    before = {name: os.environ.get(name) for name in ONE_THREAD}
-    os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
-            else:
-                os.environ[name] = value
-
-
-def end_with_parent() -> None:
-    """Let a worker end when the process that feeds it is killed; else it would wait for work for ever.
-
-    Its progress bars, shown or not, lock by thread: tqdm's own lock is a semaphore, which an ended worker leaves.
-    """
-    from tqdm import tqdm
-
-    tqdm.set_lock(threading.RLock())
-    parent = parent_process()
-
-    def watch() -> None:
-        parent.join()
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
 
 
 class _Store:

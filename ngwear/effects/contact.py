@@ -192,7 +192,14 @@ class Contact(UnilateralContact):
         elements = [ng.ElementId(ng.BND, int(nr)) for nr in self._body.outline.element[self.positions]]
         dofs = np.array([space.GetDofNrs(element) for element in elements])
         ends = self._points["x"].reshape(-1, 2)  # on the reference element
-        shapes = [[space.GetFE(e).CalcShape(x) for x in pair] for e, pair in zip(elements, ends, strict=True)]
+        vertices = self._body.outline.vertices[self.positions]
+        known: dict[tuple[bool, float], list[Array]] = {}  # by the order of the vertices' numbers, and the direction
+        shapes = []
+        for element, pair, (first, last) in zip(elements, ends, vertices, strict=True):
+            kind = (bool(first < last), float(pair[0]))
+            if kind not in known:
+                known[kind] = [space.GetFE(element).CalcShape(x) for x in pair]
+            shapes.append(known[kind])
         return dofs, np.array(shapes)
 
     def set_worn(self, depth: Array) -> None:

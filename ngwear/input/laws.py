@@ -21,7 +21,6 @@ from ngwear.laws import (
     WearLaw,
     WearRate,
 )
-from ngwear.laws.fit import fit_lubrication
 
 _LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
 _WEAR_LAWS = {
@@ -49,6 +48,8 @@ def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
     if kind == "product":
         return _product(place, values, folder)
     if kind == "lubrication" and "fitted" in values:
+        from ngwear.laws.fit import fit_lubrication  # SciPy's optimizers are slow to load
+
         return _of_file(place, values, "fitted", folder, lambda path: fit_lubrication(path).law)
     return _table(place, values, folder, _LAWS[kind])
 

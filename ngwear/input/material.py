@@ -9,7 +9,6 @@ from ngwear.errors import SceneError
 from ngwear.input.tables import get, known, record, typed
 from ngwear.materials import WLF, Arrhenius, Hyperelastic, MooneyRivlin, NeoHooke, PronySeries
 from ngwear.materials.library import relaxation_of
-from ngwear.materials.smoothing import smooth
 
 _MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
     "neo-hooke": NeoHooke,
@@ -43,6 +42,8 @@ def read_arms(table: dict[str, Any]) -> PronySeries:
         known(f"{place}.", table, {"moduli", "times", "reference", "long_term", *common})
         series = _listed_arms(table, place)
     if "smoothing" in table:
+        from ngwear.materials.smoothing import smooth  # SciPy's optimizers are slow to load
+
         series = smooth(series, misfit=typed(f"{place}.smoothing", table["smoothing"], "float"))
     if "shift" in table:
         shift = _shift(table["shift"], f"{place}.shift")

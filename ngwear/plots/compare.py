@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.plots.style import COLOURS
+from ngwear.plots.style import COLOURS, write
 from ngwear.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
@@ -34,10 +34,7 @@ def compare(folder: Path | str, other: Path | str) -> Path:
     path = Path(folder) / "comparison.png"
     with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         figure = comparison_figure(first, second)
-        try:
-            figure.savefig(path, dpi=150)
-        except OSError as error:
-            raise ResultError(f"{path} cannot be written: {error.strerror}") from error
+        write(figure, path)
     return path
 
 

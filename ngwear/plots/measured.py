@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ngwear.errors import ResultError
-from ngwear.plots.style import COLOURS
+from ngwear.plots.style import COLOURS, write
 from ngwear.profiles.comparison import Comparison
 
 if TYPE_CHECKING:
@@ -28,10 +27,7 @@ def draw_measured(comparison: Comparison, folder: Path | str) -> Path:
     path = Path(folder) / "measured.png"
     with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         figure = measured_figure(comparison)
-        try:
-            figure.savefig(path, dpi=150)
-        except OSError as error:
-            raise ResultError(f"{path} cannot be written: {error.strerror}") from error
+        write(figure, path)
     return path
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
 from ngwear.files import get_series
+from ngwear.plots.style import write
 from ngwear.sliding.scene import KIND
 
 if TYPE_CHECKING:
@@ -105,10 +106,7 @@ def plot_pin(folder: Path | str) -> list[Path]:
         "sheet_fastest": sheet_figure(result, -1),
     }
     for name, figure in drawn.items():
-        try:
-            figure.savefig(Path(folder) / f"{name}.png", dpi=130)
-        except OSError as error:
-            raise ResultError(f"{Path(folder) / name}.png cannot be written: {error.strerror}") from error
+        write(figure, Path(folder) / f"{name}.png", dpi=130)
     return [Path(folder) / f"{name}.png" for name in drawn]
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from ngwear.errors import ResultError
-from ngwear.plots.style import COLOURS
+from ngwear.plots.style import COLOURS, write
 from ngwear.plots.wear import worn_edge
 from ngwear.result_file import read_result
 
@@ -55,7 +54,4 @@ def draw_schemes(runs: Mapping[str, Mapping[str, Path]], strokes: int, file: Pat
             column[1].legend(loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2, title="elements of")
         axes[0, 0].set_ylabel("last contact pressure [MPa]")
         axes[1, 0].set_ylabel("outline, unloaded: y [mm]")
-        try:
-            figure.savefig(file, dpi=150)
-        except OSError as error:
-            raise ResultError(f"{file} cannot be written: {error.strerror}") from error
+        write(figure, file)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+from ngwear.errors import ResultError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,3 +25,20 @@ def new_figure(
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, 1, sharex=share, height_ratios=heights, squeeze=False)[:, 0]
     return figure, list(axes)
+
+
+def write(figure: Figure, path: Path, *, dpi: float = 150) -> None:
+    """Write a figure as PNG, laid out and drawn once (``Figure.savefig`` draws twice).
+
+    Raises
+    ------
+    ResultError
+        If it cannot be written.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    figure.set_dpi(dpi)
+    try:
+        FigureCanvasAgg(figure).print_png(path)
+    except OSError as error:
+        raise ResultError(f"{path} cannot be written: {error.strerror}") from error

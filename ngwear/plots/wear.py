@@ -14,7 +14,7 @@ from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.laws import has_laws, law_figure
 from ngwear.plots.sections import box, draw_planes, living, sections, show
 from ngwear.plots.stress import stress_figure
-from ngwear.plots.style import COLOURS, new_figure
+from ngwear.plots.style import COLOURS, new_figure, write
 from ngwear.plots.torn import face_figure, ridge_figure
 from ngwear.profiles.worn_edge import STATIONS, seen, view
 from ngwear.result_file import ResultFile, Snapshot, read_result
@@ -70,10 +70,7 @@ def plot(folder: Path | str, *, bands: bool | None = None) -> list[Path]:
             except KeyError as error:
                 raise ResultError(f"{Path(folder) / 'result.h5'} lacks {error}: the file is damaged") from error
             path = Path(folder) / f"{name}.png"
-            try:
-                figure.savefig(path, dpi=150)
-            except OSError as error:
-                raise ResultError(f"{path} cannot be written: {error.strerror}") from error
+            write(figure, path)
             written.append(path)
     return written
 

@@ -155,7 +155,7 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
 
 def test_a_companion_that_has_ended_is_not_run_again(finished, monkeypatch):
     folder, result = finished
-    monkeypatch.setattr(companion, "get_context", None)
+    monkeypatch.setattr(companion, "Worker", None)
     again = run_stated(scene("implicit"), out=folder, resume=True)
     assert again.summary["error estimates"] == result.summary["error estimates"]
 

@@ -20,7 +20,8 @@ from ngwear.costs.knobs import at, knobs
 from ngwear.costs.ladder import STOPPED
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.scenefile import read_scene
-from ngwear.sweep import one_thread_pool, sweep
+from ngwear.sweep import sweep
+from ngwear.workers import one_thread_pool
 
 JUMPS = (("strokes = 4", "strokes = 12"), ('step = "each"', 'step = "jump"'))
 PIN = """
