@@ -11,8 +11,8 @@
   torn grows with every finer mesh, and no coarser one tells: all of it counts as error of the area lost and the depth.
   The outward peak stands at the end of the worn flat, over few elements, and grows with every finer mesh.
 
-Units: mm, N, MPa. Its runs go two at a time on two cores and take 10,400 CPU s together, half of them the finer mesh:
-with a folder, a verification that was stopped goes on.
+Units: mm, N, MPa. Its runs go two at a time on two cores and take 6,200 to 10,400 CPU s together, half of them the
+finer mesh: with a folder, a verification that was stopped goes on.
 """
 
 from __future__ import annotations
