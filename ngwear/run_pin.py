@@ -25,7 +25,7 @@ READINGS: dict[str, Callable[[PinSlide], float]] = {
     "contact area [-]": lambda slide: slide.patch.area,
     "peak pressure [-]": lambda slide: slide.peak,
 }
-ORDERS = {name: 2.0 for name in READINGS if name != "peak pressure [-]"}  # of convergence
+ORDERS = dict.fromkeys(READINGS, 2.0)  # of convergence
 
 
 def run_pin(
@@ -113,8 +113,8 @@ def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
     """Relative error of what is read off, in the mean square of the speeds: each whole, then its parts by their names.
 
     Of elements and columns (the time steps) from the two meshes of each speed; of the arms that are folded away their
-    bound, at the worst speed. The peak pressure is taken as of first order. What is integrated over the contact errs by
-    the square of what the strains do, and time steps are of second order: that of the rest.
+    bound, at the worst speed. What is integrated over the contact, or fitted to many of its faces, errs by the square of
+    what the strains do, and time steps are of second order.
     """
     folded = max(scene.mesh.folding(scene.pin.series, fine.speed).bound for _, fine in pairs)
     coarse, fine = (readings([pair[k] for pair in pairs]) for k in (0, 1))
