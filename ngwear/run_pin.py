@@ -113,8 +113,8 @@ def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
     """Relative error of what is read off, in the mean square of the speeds: each whole, then its parts by their names.
 
     Of elements and columns (the time steps) from the two meshes of each speed; of the arms that are folded away their
-    bound, at the worst speed. What is integrated over the contact, or fitted to many of its faces, errs by the square of
-    what the strains do, and time steps are of second order.
+    bound, at the worst speed. What is integrated over the contact, or fitted to many of its faces, errs by the square
+    of what the strains do, and time steps are of second order.
     """
     folded = max(scene.mesh.folding(scene.pin.series, fine.speed).bound for _, fine in pairs)
     coarse, fine = (readings([pair[k] for pair in pairs]) for k in (0, 1))
