@@ -31,6 +31,7 @@ SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element
 NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept
 SHRINKS = 0.3  # times the correction before: the next, if the tangent is to be kept on
+LEAVES = 0.01  # times the tolerance: what a correction by a kept tangent may leave
 EXACT = 1e-2  # of the residual left by a correction: its tangent is as good as Newton's own
 PATIENCE = 8  # iterations within which the smallest correction must halve
 
@@ -152,7 +153,8 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         goal = options.tolerance * size
         # Far below the goal the displacement is exact, and pressures still moving do no work on it.
         settled = change <= 1e-4 * goal or _settled(vector, correction, pressures, options.pressure_tolerance, left)
-        if step == 1.0 and change <= goal and settled:
+        leaves = change * _ratio(report.corrections) if kept and not options.reuse else 0.0
+        if step == 1.0 and change <= goal and leaves <= LEAVES * goal and settled:
             report.outcome = Outcome.CONVERGED
             break
         if _stalled(report.corrections):
@@ -182,6 +184,11 @@ def _will_do(corrections: list[float], mark: float, *, kept: bool) -> bool:
         return False
     first = not kept and corrections[-2] > mark
     return first or corrections[-1] <= SHRINKS * corrections[-2]
+
+
+def _ratio(corrections: list[float]) -> float:
+    """The last correction over the one before: by a tangent that is kept, also the next one over the last."""
+    return corrections[-1] / corrections[-2] if len(corrections) > 1 and corrections[-2] > 0 else 0.0
 
 
 def _stalled(corrections: list[float]) -> bool:
