@@ -183,7 +183,7 @@ def _will_do(corrections: list[float], mark: float, *, kept: bool) -> bool:
     if len(corrections) < 2 or corrections[-1] > mark:
         return False
     first = not kept and corrections[-2] > mark
-    return first or corrections[-1] <= SHRINKS * corrections[-2]
+    return first or _ratio(corrections) <= SHRINKS
 
 
 def _ratio(corrections: list[float]) -> float:
