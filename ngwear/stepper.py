@@ -34,7 +34,7 @@ from ngwear.wearing import Wearing
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
-FIRST = 0.01  # of the program's cycles: the first step
+FIRST = 10  # times as long as the first step is the longest one
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
 MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
@@ -80,9 +80,9 @@ class Stepper:
         scene = self.scene
         stage = Stage(scene, unworn_body(scene))
         cycles = scene.program.strokes / len(scene.program.cycle)
-        first = 1 if scene.deactivation is not None else max(1, round(FIRST * cycles))  # what is pulled too hard tears
         longest = min(scene.wear.max_jump, max(1, math.ceil(scene.accuracy.longest_jump * cycles)))
-        control = JumpControl(scene.accuracy.wear_error, cycles=min(first, longest), longest=longest)
+        first = 1 if scene.deactivation is not None else math.ceil(longest / FIRST)  # what is pulled too hard tears
+        control = JumpControl(scene.accuracy.wear_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         problem = stage.problem
