@@ -81,7 +81,7 @@ class Stepper:
         stage = Stage(scene, unworn_body(scene))
         cycles = scene.program.strokes / len(scene.program.cycle)
         longest = min(scene.wear.max_jump, max(1, math.ceil(scene.accuracy.longest_jump * cycles)))
-        first = 1 if scene.deactivation is not None else math.ceil(longest / FIRST)  # what is pulled too hard tears
+        first = 1 if scene.deactivation is not None else max(1, longest // FIRST)  # what is pulled too hard tears
         control = JumpControl(scene.accuracy.wear_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}

@@ -21,7 +21,7 @@ GEOMETRIES = Path(__file__).parents[2] / "geometries"
 DEPTH = "maximum depth [mm]"
 CASES = {  # of each scene: elements across, edges [mm], cycles in a jump
     "shaft_on_plate": ((3.0, 6.0, 12.0, 24.0), (0.4, 0.2, 0.1, 0.05), (50, 25, 10)),
-    "rod_seal": ((2.0, 4.0, 8.0, 12.0), (0.08, 0.04, 0.02), (25, 10, 5)),
+    "rod_seal": ((2.0, 4.0, 8.0, 12.0), (0.08, 0.04, 0.02, 0.01), (25, 10, 5, 2)),
 }
 
 
