@@ -8,12 +8,14 @@ from ngwear.errors import require
 
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
-STRESS_ERROR, WEAR_ERROR = 0.05, 0.02  # with ALIKE elements across
+STRESS_ERROR, WEAR_ERROR = 0.05, 0.02
+STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.004  # stress and depth error with ALIKE elements across
 LOOSEST = 0.05  # wear error: beyond, with few elements across, steps err by more than the mesh, and are hard to solve
 LONGEST_JUMP = 5.0  # times the wear error: a tenth of the program with 0.02
 ALIKE = 12.0
 GRADING, STEEPEST = 0.25, 0.5  # with ALIKE elements across or more, and with 2
 STEEPER = 0.4  # power of the grading's growth with fewer elements: with more, stresses ask for more and more meshes
+TOLERANCES = ("stress_error", "wear_error", "longest_jump", "depth_error")
 LEAST_ACROSS, MOST_ACROSS = 0.5, 200.0
 LEAST_ERROR = 1e-3  # what two meshes differ by where nodes happen to fall, measured on the shipped scenes
 PRESETS = {"draft": 6.0, "engineering": 12.0, "reference": 24.0}  # elements across
@@ -40,7 +42,7 @@ class Accuracy:
         edges are not. ``ngwear cost`` compares them on a scene's own elements: see ``costs.knobs``.
     stress_error : float or None
         Error indicator of the stresses over the energy norm, up to which elements outside the contacts stay
-        coarse [-]; 0.05 unless given.
+        coarse [-], all of them with 1; 0.05 unless given.
     wear_error : float or None
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side. Laws of friction
         and wear may change by five times as much in a jump (``ngwear.drift``). 0.02 unless given.
@@ -49,12 +51,16 @@ class Accuracy:
         slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err
         by would be the same in a coarser run: no comparison would show it. And a stroke of the cycle is solved with
         what the others are expected to wear: after long jumps its pressure overshoots where they end the contact.
+    depth_error : float or None
+        What all wear steps may err by of the greatest depth, as they tell of themselves [-]: each by its share of the
+        program. 1, which limits nothing, unless given, or with ``across``.
     folding_error : float
         Largest relative error of stress that arms of the memory may cause by being folded away [-].
     across : float or None
         Elements across the contacts, on the average by load, instead of lengths: the run chooses ``patch`` with each
-        new mesh, and by the section's size the other lengths. Tolerances that are not given go along: the stresses'
-        with the square of the element edge, the wear's, up to 0.05, and the longest jump with the edge.
+        new mesh, for each zone of a contact by its own width, and by the section's size the other lengths. Tolerances
+        that are not given go along: the stresses' with the square of the element edge, the depth's, the wear's, up to
+        0.05, and the longest jump with the edge.
     error : float or None
         Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
         (``ngwear.adaptive``).
@@ -68,6 +74,7 @@ class Accuracy:
     stress_error: float | None = None
     wear_error: float | None = None
     longest_jump: float | None = None
+    depth_error: float | None = None
     folding_error: float = 1e-3
     across: float | None = None
     error: float | None = None
@@ -124,12 +131,14 @@ class Accuracy:
         if self.error is not None:
             return
         finer = 1.0 if self.across is None else ALIKE / self.across
-        self._default("stress_error", min(1.0, STRESS_ERROR * finer**2))
+        self._default("stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2))
+        self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer))
         self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
         self._default("longest_jump", min(1.0, LONGEST_JUMP * self.wear_error))
         require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
         require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
         require(0 < self.longest_jump <= 1, "accuracy.longest_jump", self.longest_jump, "must lie between 0 and 1")
+        require(0 < self.depth_error <= 1, "accuracy.depth_error", self.depth_error, "must lie between 0 and 1")
         if self.across is not None:
             return
         for name, value in (("patch", PATCH), ("coarse", COARSE), ("mounting", MOUNTING)):
@@ -145,9 +154,7 @@ class Accuracy:
     def _refuse_two_ways(self) -> None:
         """SceneError for an accuracy that is said twice, or that no run can show."""
         lengths = [name for name in ("patch", "coarse", "mounting") if getattr(self, name) is not None]
-        tolerances = [
-            name for name in ("stress_error", "wear_error", "longest_jump") if getattr(self, name) is not None
-        ]
+        tolerances = [name for name in TOLERANCES if getattr(self, name) is not None]
         if self.across is not None:
             says = f"must lie between {LEAST_ACROSS:g} and {MOST_ACROSS:g} elements"
             require(LEAST_ACROSS <= self.across <= MOST_ACROSS, "accuracy.across", self.across, says)

@@ -1,10 +1,10 @@
 """A run that states an error no larger than was asked for: finer and finer levels, the last of which is kept.
 
 A level has two or four times as many elements across the contacts as the one before, and tolerances of stresses and
-wear that go along (``Accuracy``), as do the longest jumps, shorter than a preset's: they are cheaper than elements.
-Within it the run chooses the patch with each new mesh, the elements elsewhere by their stresses, and the jumps by what
-the wear steps err by. Levels are the companions of finer ones (``ngwear.companion``), so that the first alone needs
-some of its own; one, if that shows an error small enough.
+wear that go along (``Accuracy``). Within it the run chooses the patch of each zone of a contact with each new mesh,
+the elements elsewhere by their stresses, and the jumps by what the wear steps err by. Levels are the companions of
+finer ones (``ngwear.companion``), so that the first alone needs some of its own; one, if that shows an error small
+enough.
 
 The error meant is that of the greatest depth; others are stated beside it.
 """
@@ -29,14 +29,13 @@ from ngwear.workers import Worker
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
 FIRST, AT = 8.0, 0.01  # elements across of the first level when so much error is asked for
-COARSEST_FIRST, FINEST_FIRST = 2.0, 32.0
+COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
-JUMPS = 0.5  # longest jump times elements across; with a preset's 1.2 they would err more than the elements
 ACROSS, CPU = "elements across [-]", "CPU time [s]"
 
 
 def first_across(error: float) -> float:
-    """Elements across the contacts to begin with: between 2 and 32, a power of 2, twice as many for half the error."""
+    """Elements across the contacts to begin with: twice as many for half the error, a power of 2, from 2.5 to 32."""
     return min(max(FIRST * 2.0 ** math.ceil(math.log2(AT / error) - 1e-9), COARSEST_FIRST), FINEST_FIRST)
 
 
@@ -91,7 +90,7 @@ def run_to_error(
 
 def at_level(scene: Scene, across: float) -> Scene:
     """The scene with so many elements across its contacts, and tolerances that go along."""
-    return replace(scene, accuracy=scene.accuracy.with_across(across, longest_jump=min(1.0, JUMPS / across)))
+    return replace(scene, accuracy=scene.accuracy.with_across(across))
 
 
 class _Told:

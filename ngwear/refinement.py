@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,48 +16,53 @@ from ngwear.stage import Stage
 Array = NDArray[np.float64]
 
 FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
+NARROWEST = 0.5  # of the patch: elements of the narrowest zones
+NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 
-def wanted_size(stage: Stage, phases: list[Array], *, reach: float = 2.0, sliding: float = 0.0) -> SizeField:
+def wanted_size(
+    stage: Stage, phases: list[Array], *, across: float | None = None, reach: float = NEAR, sliding: float = 0.0
+) -> SizeField:
     """Element sizes for the present states, one for each stroke of the cycle.
 
-    The patch's where a followed contact carries load, its gap is below ``reach`` patches, or wear over a distance of
-    ``sliding`` [mm] may close it; elsewhere what brings the indicator of an element to its share of
+    In the contacts those of ``contact_sizes``; elsewhere what brings the indicator of an element to its share of
     ``Accuracy.stress_error``.
     """
-    accuracy = stage.scene.accuracy
-    asked = _contact_places(stage, phases, reach, sliding)
-    contacts = SizeField(asked, np.full(len(asked), accuracy.patch), accuracy.coarse, accuracy.grading)
+    contacts = contact_sizes(stage, phases, across=across, reach=reach, sliding=sliding)
     places, sizes = _stress_sizes(stage, phases)
     heard = sizes < FINER * contacts(places)
-    return SizeField(
-        np.vstack([asked, places[heard]]),
-        np.concatenate([contacts.sizes, sizes[heard]]),
-        accuracy.coarse,
-        accuracy.grading,
+    return replace(
+        contacts,
+        seeds=np.vstack([contacts.seeds, places[heard]]),
+        sizes=np.concatenate([contacts.sizes, sizes[heard]]),
     )
 
 
 def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0) -> bool:
     """Whether a followed contact, or a stress, has reached elements that are much too coarse for it.
 
-    With ``sliding``, whether a contact may do so within that distance [mm].
+    A gap must be below ``NEARER`` patches for that, so that no mesh is outgrown as soon as it is made. With
+    ``sliding``, whether a contact may do so within that distance [mm].
     """
-    wanted, body = wanted_size(stage, phases, sliding=sliding), stage.body
-    if len(wanted.seeds) == 0:
-        return False
+    wanted, body = wanted_size(stage, phases, reach=NEARER, sliding=sliding), stage.body
     slack = np.where(wanted.sizes > stage.scene.accuracy.patch, STRESS_SLACK, CONTACT_SLACK)
     return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
 
 
-def _contact_places(stage: Stage, phases: list[Array], reach: float, sliding: float) -> Array:
-    """Contour points where a followed contact carries load or nearly so, or may come to, shape (k, 2).
+def contact_sizes(
+    stage: Stage, phases: list[Array], *, across: float | None = None, reach: float = NEAR, sliding: float = 0.0
+) -> SizeField:
+    """Element sizes for the contacts alone.
+
+    The patch's where a followed contact carries load, its gap is below ``reach`` patches, or wear over a distance of
+    ``sliding`` [mm] may close it. With ``across``, zones that are narrower than others have smaller ones, so many
+    across each, down to ``NARROWEST`` of the scene's, which is that of the mean zone.
 
     A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate.
     """
-    contour = stage.body.contour
-    ask = np.zeros(len(contour), dtype=bool)
+    accuracy, contour = stage.scene.accuracy, stage.body.contour
+    size = np.full(len(contour), np.inf)
     vector = stage.problem.state.vec.FV().NumPy()
     keep = vector.copy()
     for phase in phases:
@@ -66,10 +73,24 @@ def _contact_places(stage: Stage, phases: list[Array], reach: float, sliding: fl
             pressure = profile.nominal_pressure
             wearing = pressure * contact.wear_factor(profile.pressure)
             deepest = spec.wear_rate.highest * sliding * wearing.max(initial=0.0)
-            near = (pressure > 0) | (profile.gap < reach * stage.scene.accuracy.patch + deepest)
-            ask |= _spanned(contour, profile, near)
+            patch = element_edges(profile, accuracy.patch, across)
+            near = (pressure > 0) | (profile.gap < reach * accuracy.patch + deepest)
+            ask = _spanned(contour, profile, near)
+            size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
     vector[:] = keep
-    return contour.points[ask]
+    ask = size < np.inf
+    return SizeField(contour.points[ask], size[ask], accuracy.coarse, accuracy.grading)
+
+
+def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:
+    """Element edge for each node of a contact by its zone, or the nearest one, shape (k,)."""
+    zones = profile.zones() if across is not None else []
+    if not zones:
+        return np.full(len(profile.t), patch)
+    nodes = np.concatenate([np.arange(zone.nodes.start, zone.nodes.stop) for zone in zones])
+    edges = np.concatenate([np.full(zone.nodes.stop - zone.nodes.start, zone.width / across) for zone in zones])
+    nearest = np.abs(profile.t[:, None] - profile.t[nodes]).argmin(axis=1)
+    return np.clip(edges[nearest], NARROWEST * patch, patch)
 
 
 def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
@@ -79,8 +100,11 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
     24 (1987) 337): eta^2 = int |P - P*|^2 / 2G dV. With N elements of equal error each may have
     eta = stress_error sqrt(energy / N); the error falls with the element edge to the power of the displacement's order.
     Order 1 is taken for 2 in this, and arrives in several meshes: where few elements are refined, N stays and theirs
-    falls with the square (the shipped shaft then has 7,000 elements; by the first power it had 8,800).
+    falls with the square (the shipped shaft then has 7,000 elements; by the first power it had 8,800). A tolerance of 1
+    asks for nothing.
     """
+    if stage.scene.accuracy.stress_error == 1:
+        return np.empty((0, 2)), np.empty(0)
     points, elasticity = stage.problem.points, stage.elasticity
     points.follow()
     edge, power = np.full(len(points.volumes), np.inf), 1 / max(elasticity.order, 2)

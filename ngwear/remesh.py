@@ -57,7 +57,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
         old.scene = chosen(old, phases, state.across)
         if state.ledger.worn == 0:
             contour = unworn_outline(old.scene)
-    wanted = wanted_size(old, phases, sliding=still_to_slide(state))
+    wanted = wanted_size(old, phases, across=state.across, sliding=still_to_slide(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0

@@ -106,7 +106,7 @@ class Recorder:
             "area removed from the outline [mm^2]": ledger.removed,
             "error estimate of worn area [mm^2]": ledger.area_error,
             "maximum depth [mm]": float(depth.max()),
-            "error estimate of maximum depth [mm]": ledger.depth_error,
+            "error estimate of maximum depth [mm]": abs(ledger.depth_error),
         }
         for name in dict.fromkeys(scene.worn_edges):
             row[f"depth at {name} [mm]"] = float(depth[self.unworn.on((name,))].max())
@@ -213,7 +213,7 @@ class Recorder:
             "remeshes": ledger.remeshes,
             "error estimates": {
                 "worn area [-]": ledger.area_error / worst,
-                "maximum depth [-]": ledger.depth_error / max(float(depth.max()), 1e-300),
+                "maximum depth [-]": abs(ledger.depth_error) / max(float(depth.max()), 1e-300),
                 "area against the law [-]": abs(ledger.removed - ledger.worn) / worst,
                 "area in a remesh [-]": ledger.remesh_jump,
             },

@@ -69,11 +69,13 @@ class Ledger:
         Area taken off the outline's polygon [mm²].
     moment : float
         First moment of that area about y = 0 [mm³]: about the axis of a ring, 2 pi times it is the worn volume.
+    depth : float
+        Greatest depth worn off the outline [mm].
     area_error : float
         Sum of the steps' embedded errors of worn area [mm²].
     depth_error : float
         What the greatest depth changes by if each point's sum of the steps' errors, with their signs, is taken off it;
-        of jumps only, where the scene lets cycles be jumped [mm].
+        of jumps only, where the scene lets cycles be jumped; positive if it is less by that [mm].
     remesh_jump : float
         Largest relative change of the section's area in a remesh [-].
     lost : dict of Fate to float
@@ -85,6 +87,7 @@ class Ledger:
     worn: float = 0.0
     removed: float = 0.0
     moment: float = 0.0
+    depth: float = 0.0
     area_error: float = 0.0
     depth_error: float = 0.0
     remesh_jump: float = 0.0
@@ -95,6 +98,14 @@ class Ledger:
     def copy(self) -> Ledger:
         """A book of its own with the same entries."""
         return replace(self, lost=dict(self.lost))
+
+    def depth_ratio(self, before: Ledger, share: float, *, left: float) -> float:
+        """What a step errs by of the depth that the program will reach, over the step's share of the program [-].
+
+        The rate of the step is taken for what is ``left`` of the program; both shares are fractions of it.
+        """
+        end = self.depth + (self.depth - before.depth) * left / share
+        return abs(self.depth_error - before.depth_error) / end / share if end > 0 else 0.0
 
 
 @dataclass

@@ -34,6 +34,7 @@ from ngwear.wearing import Wearing
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
 FIRST = 10  # times as long as the first step is the longest one
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
@@ -77,12 +78,12 @@ class Stepper:
         SceneError
             If a surface that shall wear the part does not touch it in any stroke.
         """
-        scene = self.scene
+        scene, accuracy = self.scene, self.scene.accuracy
         stage = Stage(scene, unworn_body(scene))
         cycles = scene.program.strokes / len(scene.program.cycle)
-        longest = min(scene.wear.max_jump, max(1, math.ceil(scene.accuracy.longest_jump * cycles)))
+        longest = min(scene.wear.max_jump, max(1, math.ceil(accuracy.longest_jump * cycles)))
         first = 1 if scene.deactivation is not None else max(1, longest // FIRST)  # what is pulled too hard tears
-        control = JumpControl(scene.accuracy.wear_error, cycles=first, longest=longest)
+        control = JumpControl(accuracy.wear_error, depth=accuracy.depth_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         problem = stage.problem
@@ -113,7 +114,8 @@ class Stepper:
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting's mesh may be too fine, too
             if state.across is not None:
                 state.stage.scene = chosen(state.stage, vectors, state.across)
-            if not first and not outgrown(state.stage, vectors, sliding=ahead):
+            narrow = state.stage.scene.accuracy.patch < NARROWER * laid.accuracy.patch
+            if not (first or narrow or outgrown(state.stage, vectors, sliding=ahead)):
                 state.stage.scene = laid
                 break
             remesh(state)
@@ -186,7 +188,9 @@ class Stepper:
                 self._restore(state, saved)
                 most = state.control.cut(cycles)
                 continue
-            state.control.update(ratio, cycles)
+            share = (state.strokes - saved["strokes"]) / program.strokes
+            off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)
+            state.control.update(ratio, cycles, off)
             if state.strokes in (*self.scene.save.strokes, program.strokes):
                 self._look(state)
             return state

@@ -166,7 +166,8 @@ class Wearing:
         step = np.stack([worn, 0.0 * error if asked else error])
         state.depths = step if state.depths is None else state.depths + step
         depth, error = state.depths
-        state.ledger.depth_error = abs(float((depth - error).max() - depth.max()))
+        state.ledger.depth = float(depth.max())
+        state.ledger.depth_error = state.ledger.depth - float((depth - error).max())
 
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.

@@ -131,7 +131,9 @@ def _jumps(scene: Scene) -> Knob:
         if error == 0:
             return replace(scene, wear=replace(scene.wear, step="each"))
         wear = replace(scene.wear, step="jump")
-        accuracy = replace(scene.accuracy, wear_error=error, longest_jump=None)
+        old = scene.accuracy
+        depth = old.depth_error if old.depth_error == 1.0 else min(1.0, old.depth_error * error / old.wear_error)
+        accuracy = replace(old, wear_error=error, longest_jump=None, depth_error=depth)
         return replace(scene, wear=wear, accuracy=accuracy)
 
     return Knob(ladder, apply)

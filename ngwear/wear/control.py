@@ -25,6 +25,9 @@ class JumpControl:
 
         n_new = 0.9 n sqrt(tolerance / ratio),   growth at most 2.
 
+    So is what they tell of the greatest depth, each step's error by its share of the program, which ``depth`` bounds:
+    their sum is then no more, and steps are short where depths are made wrong, be areas as they may.
+
     Parameters
     ----------
     tolerance : float
@@ -32,11 +35,14 @@ class JumpControl:
     cycles : int
         Cycles of the next step.
     longest : int
+    depth : float
+        Relative error of the greatest depth that all steps may add up to [-].
     """
 
     tolerance: float
     cycles: int = 1
     longest: int = 1000
+    depth: float = 1.0
 
     def share(self, left: int) -> int:
         """Cycles of the next step when so many are left to the next mark: steps of one length, none a remnant."""
@@ -47,14 +53,18 @@ class JumpControl:
         """Whether a step with this error ratio stands; single cycles always do."""
         return cycles == 1 or not ratio > 2 * self.tolerance
 
-    def update(self, ratio: float, cycles: int) -> None:
-        """Set the next number of cycles after a step of ``cycles``; ``ratio`` is nan if it is not known yet."""
+    def update(self, ratio: float, cycles: int, depth: float = 0.0) -> None:
+        """Set the next number of cycles after a step of ``cycles``.
+
+        ``ratio`` and ``depth`` are its errors of area and depth [-], the first one nan if it is not known yet.
+        """
+        off = max(ratio / self.tolerance, depth / self.depth)
         if math.isnan(ratio):
             factor = 1.0
-        elif ratio == 0:
+        elif off == 0:
             factor = GROWTH
         else:
-            factor = min(GROWTH, max(0.3, SAFETY * math.sqrt(self.tolerance / ratio)))
+            factor = min(GROWTH, max(0.3, SAFETY / math.sqrt(off)))
         self.cycles = int(min(self.longest, max(1, math.floor(factor * cycles + 1e-9))))
 
     def cut(self, cycles: int) -> int:

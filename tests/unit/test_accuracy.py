@@ -30,9 +30,11 @@ def test_lengths_are_given_unless_something_else_is():
 
 def test_tolerances_go_along_with_the_elements_across():
     default, across = Accuracy(), Accuracy(across=ALIKE)
-    assert (across.stress_error, across.wear_error) == (default.stress_error, default.wear_error)
+    assert across.wear_error == default.wear_error
+    assert default.depth_error == 1.0, "lengths say nothing of it"
     half = Accuracy(across=ALIKE / 2)
     assert half.stress_error == 4 * across.stress_error
+    assert half.depth_error == 2 * across.depth_error
     assert half.wear_error == 2 * across.wear_error
     assert half.longest_jump == 2 * across.longest_jump
     assert Accuracy(across=3).wear_error == Accuracy(across=1).wear_error == 0.05
@@ -56,7 +58,7 @@ def test_a_companion_has_fewer_elements_across(across):
     fine = of(across)
     coarse = scaled(fine, 2.0)
     tolerance = coarse.accuracy.wear_error
-    assert coarse == of(across / 2, wear_error=tolerance, longest_jump=5 * tolerance)
+    assert coarse == of(across / 2, wear_error=tolerance, longest_jump=min(1.0, 5 * tolerance))
     assert tolerance == 2 * fine.accuracy.wear_error  # also where a run of its own has no looser one
     assert scaled(scaled(fine, 2.0), 2.0) == scaled(fine, 4.0)
 
@@ -74,6 +76,8 @@ def test_a_companion_has_fewer_elements_across(across):
         ({"error": -0.01}, "is less than an estimate"),
         ({"error": float("nan")}, "must be below 1"),
         ({"longest_jump": 0.0}, "must lie between 0 and 1"),
+        ({"depth_error": 0.0}, "accuracy.depth_error = 0.0: must lie between 0 and 1"),
+        ({"error": 0.01, "depth_error": 0.1}, r"lets the run choose \['depth_error'\]"),
     ],
 )
 def test_what_contradicts_itself_is_refused(given, told):

@@ -27,7 +27,8 @@ def coarse_first(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("error", "across"), [(0.3, 2), (0.05, 2), (0.03, 4), (0.02, 4), (0.01, 8), (0.005, 16), (0.002, 32), (0.001, 32)]
+    ("error", "across"),
+    [(0.3, 2.5), (0.05, 2.5), (0.03, 4), (0.02, 4), (0.01, 8), (0.005, 16), (0.002, 32), (0.001, 32)],
 )
 def test_the_first_level_by_the_error(error, across):
     assert first_across(error) == across
@@ -116,7 +117,7 @@ def test_a_single_run_is_no_answer():
 def test_a_level_keeps_what_is_not_about_the_error():
     asked = replace(to(0.01), accuracy=Accuracy(error=0.01, order=3, grading=0.4, folding_error=0.1))
     level = at_level(asked, 5.0).accuracy
-    assert level == Accuracy(across=5.0, longest_jump=0.1, order=3, grading=0.4, folding_error=0.1)
+    assert level == Accuracy(across=5.0, order=3, grading=0.4, folding_error=0.1)
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear.refinement import outgrown, wanted_size
+from ngwear.accuracy import Accuracy
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.refinement import NARROWEST, contact_sizes, element_edges, outgrown, wanted_size
 from ngwear.stepper import Stepper
 
 
@@ -52,3 +54,48 @@ def test_recovery_keeps_a_constant_and_smooths_a_jump(started):
     near = np.abs(points.centres[:, 0] - 2.0) < 3 * points.edges.max()
     assert jump[near].max() > 0.1
     assert jump[~near].max() < 1e-9
+
+
+def test_narrow_zones_have_elements_of_their_own():
+    """Down to half the patch; a gap beside a zone takes the nearest zone's, and lengths are the same everywhere."""
+    t = np.arange(12.0)
+    loaded = np.isin(t, [1, 2, 3, 6, 7, 10])
+    place = np.stack([0.1 * t, np.zeros(12)], axis=1)
+    profile = ContactProfile(
+        t=t,
+        reference=place,
+        place=place,
+        nominal_pressure=1.0 * loaded,
+        pressure=1.0 * loaded,
+        gap=0.01 * ~loaded,
+        weight=np.full(12, 0.1),
+        load=0.1 * loaded,
+        edges=np.stack([np.arange(11), np.arange(1, 12)], axis=1),
+    )
+    widths = [zone.width for zone in profile.zones()]
+    assert len(widths) == 3
+    assert widths[0] > widths[1] > widths[2]
+    patch = widths[0] / 4
+    sizes = element_edges(profile, patch, 4.0)
+    assert sizes[[0, 1, 2, 3, 4]] == pytest.approx(patch)
+    assert sizes[[5, 6, 7, 8]] == pytest.approx(widths[1] / 4)
+    assert sizes[[9, 10, 11]] == pytest.approx(max(widths[2] / 4, NARROWEST * patch))
+    assert element_edges(profile, patch, None) == pytest.approx(patch)
+    assert element_edges(replace(profile, pressure=np.zeros(12)), patch, 4.0) == pytest.approx(patch)
+
+
+def test_elements_across_are_counted_in_each_zone(sheet):
+    state = Stepper(replace(sheet, accuracy=Accuracy(across=6.0))).start()
+    stage, phases = state.stage, [p.vector for p in state.phases]
+    alike, own = contact_sizes(stage, phases), contact_sizes(stage, phases, across=6.0)
+    assert own.seeds == pytest.approx(alike.seeds)
+    (zone,) = stage.contacts["roller"].profile().zones()
+    assert own.sizes == pytest.approx(min(zone.width / 6.0, stage.scene.accuracy.patch))
+    with_more = contact_sizes(stage, phases, across=1e3).sizes
+    assert with_more == pytest.approx(NARROWEST * stage.scene.accuracy.patch)
+
+
+def test_a_tolerance_of_one_asks_for_nothing(started):
+    state = started(stress_error=1.0)
+    stage, phases = state.stage, [p.vector for p in state.phases]
+    assert wanted_size(stage, phases).seeds == pytest.approx(contact_sizes(stage, phases).seeds)

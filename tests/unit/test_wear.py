@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.effects.contact_profile import ContactProfile
+from ngwear.state import Ledger
 from ngwear.wear.archard import critical_distance, worn_share
 from ngwear.wear.control import GROWTH, SAFETY, JumpControl
 
@@ -110,6 +111,23 @@ def test_large_error_shrinks_but_not_below_one():
     assert control.cycles == 30
     control.update(1.0, 1)
     assert control.cycles == 1
+
+
+def test_the_depths_error_shortens_a_step_that_areas_would_let_grow():
+    control = JumpControl(0.01, cycles=16, depth=0.002)
+    control.update(0.0001, 16, 0.008)
+    assert control.cycles == int(SAFETY * 16 / 2)
+    control.update(0.0001, 7, 0.002 * SAFETY**2)
+    assert control.cycles == 7
+    control.update(0.04, 7, 0.0)
+    assert control.cycles == int(SAFETY * 7 / 2), "areas count all the same"
+
+
+def test_a_steps_error_of_depth_is_told_by_its_share_of_the_program():
+    """Half done, 10 deep, and 2 deep a tenth: 20 at the end; 0.1 off within a tenth is 0.05 in all."""
+    before, after = Ledger(depth=8.0, depth_error=-0.05), Ledger(depth=10.0, depth_error=0.05)
+    assert after.depth_ratio(before, 0.1, left=0.5) == pytest.approx(0.1 / 20 / 0.1)
+    assert Ledger().depth_ratio(Ledger(), 0.1, left=0.9) == 0.0
 
 
 def test_longest_caps_the_growth():
