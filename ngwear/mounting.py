@@ -56,7 +56,6 @@ def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
     """
     problem = stage.problem
     loads = stage.mounted_loads()
-    options = StepOptions(first=1 / 64)
 
     def report(fraction: float, _: Any) -> None:
         on_mount(0.7 * fraction)
@@ -64,13 +63,13 @@ def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
     if stage.stretched_guess():
         problem.set_loads(loads)
         try:
-            return relax(problem, options, on_step=report)
+            return relax(problem, StepOptions(first=1 / 64), on_step=report)
         except ConvergenceError as error:
             log.info("%s: mounting by interference instead", error)
             problem.state.vec[:] = 0.0
     problem.set_loads(stage.first_touch())
     try:
-        return advance(problem, loads, options, on_step=report)
+        return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)
     except ConvergenceError as error:
         found = str(error).removesuffix(f"\n{error.report}")
         advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds

@@ -46,5 +46,5 @@ def even(scene: Scene, cycles: int) -> Scene:
     """The beginning of the scene in jumps of so many cycles, six elements across."""
     program = replace(scene.program, strokes=BEGINNING)
     longest = cycles * len(program.cycle) / BEGINNING
-    accuracy = scene.accuracy.with_across(6.0, wear_error=0.05, longest_jump=longest)
+    accuracy = scene.accuracy.with_across(6.0, wear_error=0.05, longest_jump=longest, depth_error=1.0)
     return replace(scene, program=program, accuracy=accuracy, save=replace(scene.save, strokes=()))
