@@ -12,7 +12,7 @@ from ngwear.stage import Stage
 
 Array = NDArray[np.float64]
 
-COARSE = 0.4  # of the section's smaller extent: where neither contact nor stress asks for less
+COARSE = 0.3  # of the section's smaller extent: where neither contact nor stress asks for less
 MOUNTING = 0.04  # of that extent
 
 
