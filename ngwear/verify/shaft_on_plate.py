@@ -125,7 +125,7 @@ def story(scene: Scene) -> Story:
         sliding = scene.program.slid(state.strokes) - scene.program.slid(before)
         told.closed_form += spec.specific_wear_rate * sliding * normal / (1 - half_angle**2 / 8)
     told.depth, told.area, told.strokes = worn_depth(state.contour), state.ledger.removed, state.strokes
-    told.depth_error = state.ledger.depth_error
+    told.depth_error = abs(state.ledger.depth_error)
     told.seconds = watch.seconds
     return told
 
