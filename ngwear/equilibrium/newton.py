@@ -31,7 +31,7 @@ SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element
 NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept
 SHRINKS = 0.3  # times the correction before: the next, if the tangent is to be kept on
-LEAVES = 0.01  # times the tolerance: what a correction by a kept tangent may leave
+LEAVES = 0.02  # times the tolerance: what a correction by a kept tangent may leave
 EXACT = 1e-2  # of the residual left by a correction: its tangent is as good as Newton's own
 PATIENCE = 8  # iterations within which the smallest correction must halve
 
