@@ -75,7 +75,7 @@ def _draw_runs(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
     _mark_targets(axis, study, choices)
     axis.set_ylabel("relative error, all knobs together [-]")
     axis.set_title("every run", fontsize=11)
-    axis.legend(fontsize=8, loc="best")
+    _legend(axis)
 
 
 def _mark_targets(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
@@ -120,7 +120,12 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
             )  # fmt: skip
     axis.set_ylabel("relative difference from the ladder's finest run [-]")
     axis.set_title("each knob alone (bold: the scene's value)", fontsize=11)
+    _legend(axis)
+
+
+def _legend(axis: Axes) -> None:
+    """Below the points: it would hide the smallest errors."""
     axis.margins(0.13)
     low, high = axis.get_ylim()
-    axis.set_ylim(low * (low / high) ** 0.25, high)  # room for the legend, which else hides the smallest errors
+    axis.set_ylim(low * (low / high) ** 0.4, high)
     axis.legend(fontsize=8, loc="lower left")
