@@ -25,8 +25,9 @@ class JumpControl:
 
         n_new = 0.9 n sqrt(tolerance / ratio),   growth at most 2.
 
-    So is what they tell of the greatest depth, each step's error by its share of the program, which ``depth`` bounds:
-    their sum is then no more, and steps are short where depths are made wrong, be areas as they may.
+    So is what they tell of the greatest depth, each step's error by its share of the program, for which ``depth`` stands
+    instead of the tolerance: their sum comes to no more than about that, and steps are short where depths are made
+    wrong, be areas as they may. A step that errs by more stands, and shorter ones follow.
 
     Parameters
     ----------
@@ -36,7 +37,7 @@ class JumpControl:
         Cycles of the next step.
     longest : int
     depth : float
-        Relative error of the greatest depth that all steps may add up to [-].
+        Relative error of the greatest depth that all steps together aim at [-].
     """
 
     tolerance: float
