@@ -25,8 +25,8 @@ class JumpControl:
 
         n_new = 0.9 n sqrt(tolerance / ratio),   growth at most 2.
 
-    So is what they tell of the greatest depth, each step's error by its share of the program, for which ``depth`` stands
-    instead of the tolerance: their sum comes to no more than about that, and steps are short where depths are made
+    So is what they tell of the greatest depth, each step's error by its share of the program, for which ``depth``
+    stands instead of the tolerance: their sum comes to about that at most, and steps are short where depths are made
     wrong, be areas as they may. A step that errs by more stands, and shorter ones follow.
 
     Parameters
