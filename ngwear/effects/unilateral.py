@@ -61,6 +61,8 @@ class UnilateralContact(Term):
     pressure_wear : PressureWear or None
         To be set before the contact is added to a form: a law of wear other than Archard's, by which kappa p becomes
         ``kappa p phi(p)``.
+    finest : float
+        Shortest of ``lengths`` [mm], once it has been added to a form.
     softness : ng.Parameter
         Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
         it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
@@ -159,7 +161,10 @@ class UnilateralContact(Term):
         self._state, self._kinematics = unknowns.state, kinematics
         self._start = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         stretch = kinematics.area_stretch(self._start, ng.Grad(self._start))
-        give = self.lengths(body) / self.modulus
+        lengths = self.lengths(body)
+        edges = lengths.vec.FV().NumPy()
+        self.finest = float(edges[edges > 0].min())
+        give = lengths / self.modulus
         kappa = self.compliance
         if self.slips_in_part:
             self.share = ng.GridFunction(ng.H1(body.mesh, order=1))

@@ -29,7 +29,7 @@ class Outcome(enum.Enum):
 SOFTNESS = (1.0, 10.0)  # of the contacts, one after the other
 SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element
-NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept
+NEARLY = 0.05  # of the shortest element edge in contact: a correction after which the tangent is kept
 SHRINKS = 0.3  # times the correction before: the next, if the tangent is to be kept on
 LEAVES = 0.02  # times the tolerance: what a correction by a kept tangent may leave
 EXACT = 1e-2  # of the residual left by a correction: its tangent is as good as Newton's own
@@ -109,7 +109,8 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
 
 
 def _iterate(problem: Problem, options: NewtonOptions) -> Report:
-    size = problem.body.size
+    size, edges = problem.body.size, [t.finest for t in problem.terms if isinstance(t, UnilateralContact)]
+    nearly = NEARLY * min(edges, default=size / 500)  # without a contact, of as fine a mesh as a seal's
     u = problem.part(DISPLACEMENT)
     pressures = [problem.part(name) for term in problem.terms for name in term.tractions]
     vector = problem.state.vec
@@ -122,10 +123,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     kept, solver = False, problem.solver if options.reuse else None
     left = 1.0 if solver is None else 0.0
     for report.iterations in range(1, options.max_iterations + 1):
-        if options.reuse:
-            kept = left <= EXACT
-        else:
-            kept = _will_do(report.corrections, NEARLY * options.tolerance * size, kept=kept)
+        kept = left <= EXACT if options.reuse else _will_do(report.corrections, nearly, kept=kept)
         if not kept:
             solver = problem.tangent()
         if solver is None:

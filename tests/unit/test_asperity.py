@@ -5,6 +5,7 @@ import pytest
 
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.materials import NeoHooke, PronySeries
+from ngwear.materials.library import filled_rubber
 from ngwear.plots.sliding import draw_friction, draw_pressures
 from ngwear.sliding.asperity import Asperity, slide
 from ngwear.sliding.passing import slide_in_time
@@ -34,6 +35,14 @@ def test_limits_are_hertz_with_the_relaxed_and_the_instantaneous_modulus(slides)
         assert s.half_length == pytest.approx(half, rel=5e-3)
         assert s.centre == pytest.approx(0.0, abs=0.01 * half)
         assert s.peak == pytest.approx(2 * 0.01 / (np.pi * half), rel=0.01)
+
+
+def test_an_asperity_far_smaller_than_its_block_is_solved_where_rubber_hardly_relaxes():
+    """The first correction is a hundredth of the block's edge and many elements in contact: no tangent may be kept."""
+    rubber = filled_rubber()
+    fast = slide(Asperity(material=rubber.elastic, series=rubber.prony, radius=0.25, load=0.05), 3e5, fineness=6)
+    assert fast.work.retries == 0
+    assert fast.dissipation == pytest.approx(fast.friction, rel=0.015)
 
 
 def test_contact_leans_ahead_of_the_axis(slides):
