@@ -29,7 +29,8 @@ class Outcome(enum.Enum):
 SOFTNESS = (1.0, 10.0)  # of the contacts, one after the other
 SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element
-NEARLY = 0.05  # of the shortest element edge in contact: a correction after which the tangent is kept
+NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept,
+SMALL = 0.05  # of the shortest element edge in contact, too
 SHRINKS = 0.3  # times the correction before: the next, if the tangent is to be kept on
 LEAVES = 0.02  # times the tolerance: what a correction by a kept tangent may leave
 EXACT = 1e-2  # of the residual left by a correction: its tangent is as good as Newton's own
@@ -110,7 +111,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
 
 def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     size, edges = problem.body.size, [t.finest for t in problem.terms if isinstance(t, UnilateralContact)]
-    nearly = NEARLY * min(edges, default=size / 500)  # without a contact, of as fine a mesh as a seal's
+    nearly = min([NEARLY * options.tolerance * size, *(SMALL * edge for edge in edges)])
     u = problem.part(DISPLACEMENT)
     pressures = [problem.part(name) for term in problem.terms for name in term.tractions]
     vector = problem.state.vec
