@@ -9,9 +9,9 @@ from ngwear.errors import require
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
 STRESS_ERROR, WEAR_ERROR = 0.05, 0.02
-STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.004  # stress and depth error with ALIKE elements across
+STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.008  # stress and depth error with ALIKE elements across
 LOOSEST = 0.05  # wear error: beyond, with few elements across, steps err by more than the mesh, and are hard to solve
-LONGEST_JUMP = 5.0  # times the wear error: a tenth of the program with 0.02
+LONGEST_JUMP, LONGEST = 5.0, 0.1  # times the wear error, and of the program at most
 ALIKE = 12.0
 GRADING, STEEPEST = 0.25, 0.5  # with ALIKE elements across or more, and with 2
 STEEPER = 0.4  # power of the grading's growth with fewer elements: with more, stresses ask for more and more meshes
@@ -134,7 +134,7 @@ class Accuracy:
         self._default("stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2))
         self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer))
         self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
-        self._default("longest_jump", min(1.0, LONGEST_JUMP * self.wear_error))
+        self._default("longest_jump", min(LONGEST, LONGEST_JUMP * self.wear_error))
         require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
         require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
         require(0 < self.longest_jump <= 1, "accuracy.longest_jump", self.longest_jump, "must lie between 0 and 1")

@@ -23,6 +23,8 @@ if TYPE_CHECKING:  # no memory, no import of it
 
 Array = NDArray[np.float64]
 
+FALLS = 2.0  # change of the rate of depth from step to step, whose square counts as an error: see depth_ratio
+
 
 @dataclass
 class Phase:
@@ -69,8 +71,8 @@ class Ledger:
         Area taken off the outline's polygon [mm²].
     moment : float
         First moment of that area about y = 0 [mm³]: about the axis of a ring, 2 pi times it is the worn volume.
-    depth : float
-        Greatest depth worn off the outline [mm].
+    depth, rate : float
+        Greatest depth worn off the outline [mm], and what the last step added to it over its share of the program [mm].
     area_error : float
         Sum of the steps' embedded errors of worn area [mm²].
     depth_error : float
@@ -88,6 +90,7 @@ class Ledger:
     removed: float = 0.0
     moment: float = 0.0
     depth: float = 0.0
+    rate: float = 0.0
     area_error: float = 0.0
     depth_error: float = 0.0
     remesh_jump: float = 0.0
@@ -100,12 +103,20 @@ class Ledger:
         return replace(self, lost=dict(self.lost))
 
     def depth_ratio(self, before: Ledger, share: float, *, left: float) -> float:
-        """What a step errs by of the depth that the program will reach, over the step's share of the program [-].
+        """Book a step's rate; return its error of the depth that the program will reach, over its share of that [-].
 
-        The rate of the step is taken for what is ``left`` of the program; both shares are fractions of it.
+        The rate of the step is taken for what is ``left`` of the program; both shares are fractions of it. What a step
+        tells of itself changes its sign now and then, and the next one would be far too long; and it cannot see a
+        contact's end that runs past whole elements. So the change of the rate since the step before, ``FALLS`` times
+        and squared, counts as much, for a step as for the program.
         """
-        end = self.depth + (self.depth - before.depth) * left / share
-        return abs(self.depth_error - before.depth_error) / end / share if end > 0 else 0.0
+        grown = self.depth - before.depth
+        self.rate = grown / share
+        end = self.depth + self.rate * left
+        if end <= 0:
+            return 0.0
+        falls = 0.0 if before.rate == 0 else FALLS * (self.rate / before.rate - 1)
+        return max(abs(self.depth_error - before.depth_error) / end / share, falls**2)
 
 
 @dataclass

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.contact import Contact
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
@@ -18,7 +17,7 @@ from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.remesh import remesh
 from ngwear.scene import ContactSpec
 from ngwear.state import State
-from ngwear.wear.archard import sampled, worn_share
+from ngwear.wear.archard import worn_share
 from ngwear.wear.backward import error_over_difference, share_of_last
 from ngwear.wear.strokes import Strokes
 
@@ -172,9 +171,10 @@ class Wearing:
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.
 
-        The error of the area is the difference from the trapezoidal rule, its absolute values over the outline added
-        up. That of the depth at a point is what this tells of the step itself (``wear.backward``), with its sign: steps
-        that wear too much here and too little there, or then, have partly made up for it.
+        The error of the area is the difference from the trapezoidal rule at the mesh's nodes, its absolute values over
+        the outline added up: how mesh edges bulge in turn, and settle, is no matter of the steps' length. That of the
+        depth at a point is what this tells of the step itself (``wear.backward``), with its sign: steps that wear too
+        much here and too little there, or then, have partly made up for it.
 
         Raises
         ------
@@ -202,19 +202,19 @@ class Wearing:
         for k, spec in enumerate(scene.contacts):
             if not spec.wears or ways[k] == 0:
                 continue
-            contact = stage.contacts[spec.name]
             profile, rate = self._rate(spec, shares)
-            mine, last = rate * profile.weight, _at_nodes(contact, profile, self.last[k], width)
-            worn = self.own[k] * ways[k] * mine + last
-            whole[k] = self.own[k] * mine.sum() + (1.0 - self.own[k]) * (0.0 if phase.area is None else phase.area[k])
-            area = worn_share(halfway, profile, worn)
-            area *= ways[k] * whole[k] / area.sum() if area.any() else 0.0
+            amount = rate * profile.weight
+            mine = worn_share(halfway, profile, amount) / width
+            before = 1.0  # a depth of the last step's, on an outline that has shrunk or grown since
+            if phase.area is not None and phase.mean[k].any():
+                before = phase.area[k] / (phase.mean[k] * width).sum()
+            area = (self.own[k] * ways[k] * mine + before * self.last[k]) * width
+            whole[k] = area.sum() / ways[k]
             share += area
-            pressure[k], mean[k] = worn_share(halfway, profile, mine) / width, area / ways[k] / width
+            pressure[k], mean[k] = mine, area / ways[k] / width
             if phase.pressure is not None:
-                before = _at_nodes(contact, profile, phase.pressure[k], width)
-                trapezoidal = 0.5 * ways[k] * (before + mine)
-                difference = sampled(halfway, profile, worn - trapezoidal)
+                difference = area / width - 0.5 * ways[k] * (before * phase.pressure[k] + mine)
+                difference = profile.between_nodes(difference) * width
                 off += difference
                 err += difference * error_over_difference(ways[k], phase.ways[k] if self.own[k] < 1.0 else 0.0)
         known, error = phase.pressure is not None, float(np.abs(off).sum())
@@ -243,12 +243,6 @@ class Wearing:
         state.ledger.moment += polygon_moment(outline.points) - polygon_moment(new.points)
         _follow(state, outline, new)
         return known
-
-
-def _at_nodes(contact: Contact, profile: ContactProfile, depth: Array, width: Array) -> Array:
-    """Area at a contact's nodes of a depth at the outline's points, each so wide [mm²]; the same in all."""
-    out = contact.from_points(depth) * profile.weight
-    return out * ((depth * width).sum() / out.sum()) if out.any() else out
 
 
 def _follow(state: State, outline: Contour, worn: Contour) -> None:

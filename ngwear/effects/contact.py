@@ -206,10 +206,6 @@ class Contact(UnilateralContact):
         """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P."""
         self._interpolate(self.worn, self._along_outline(depth))
 
-    def from_points(self, values: Array) -> Array:
-        """Values at the outline's points, linear between them, at the nodes of ``profile``."""
-        return self.nodes.average(self._along_outline(values))
-
     def _along_outline(self, values: Array) -> Array:
         ends = self._body.outline.t[self.positions]
         return np.interp(ends, np.arange(len(values) + 1), np.append(values, values[0]))

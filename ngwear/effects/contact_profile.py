@@ -78,7 +78,7 @@ class ContactProfile:
     """Nodal values along a contact's edges, in the order of the outline.
 
     The unknown pressure jumps between mesh edges; the nodal one is its lumped L2 projection, which damps the
-    jumps, corrected so that a linear pressure is exact on a graded mesh too.
+    jumps, corrected so that a linear pressure is exact on a graded mesh too, and a parabola on an even one.
 
     Attributes
     ----------
@@ -95,9 +95,11 @@ class ContactProfile:
     weight : array, shape (k,)
         Reference length that belongs to each node, int phi_i ds [mm].
     load : array, shape (k,)
-        int P phi_i ds of the unknown pressure [N/mm]: what wears.
+        The node's share of int P ds [N/mm]: what wears.
     edges : array of int, shape (m, 2)
         The two nodes of each mesh edge.
+    mean : array, shape (m,)
+        Mean nominal pressure of each mesh edge [MPa].
     """
 
     t: Array
@@ -109,6 +111,7 @@ class ContactProfile:
     weight: Array
     load: Array
     edges: NDArray[np.intp]
+    mean: Array
 
     @classmethod
     def from_samples(
@@ -138,7 +141,14 @@ class ContactProfile:
             weight=weight,
             load=load,
             edges=nodes.of_edges,
+            mean=pressure.mean(axis=1),
         )
+
+    def between_nodes(self, values: Array) -> Array:
+        """Values at the outline's points, shape (n,), as they are at the contact's nodes, and straight between them."""
+        n = len(values)
+        at_nodes = np.interp(self.t, np.arange(n), values, period=n)
+        return np.where(values == 0.0, 0.0, np.interp(np.arange(n), self.t, at_nodes, period=n))
 
     def zones(self, *, threshold: float = 1e-3) -> list[Zone]:
         """Connected pieces where the pressure exceeds ``threshold`` times its maximum."""
@@ -195,12 +205,30 @@ def nodal_pressure(
     weight = nodes.total(np.repeat(lengths / 2, 2))
     load = nodes.total(share)
     load = np.where(load > 1e-9 * load.max(initial=0.0), load, 0.0)
-    nominal = load / weight
-    if not nodal:
-        nominal -= _grading_bias(nodes, lengths, weight, pressure.mean(axis=1))
-    nominal = np.maximum(nominal, 0.0)
+    if nodal:
+        return load / weight, load, weight
+    lumped = load / weight - _grading_bias(nodes, lengths, weight, pressure.mean(axis=1))
+    gain = _gathered(nodes, lengths, lumped, load)
+    nominal = np.maximum(lumped + gain / weight, 0.0)
+    load = np.maximum(load + gain, 0.0)
     nominal[load <= 0] = 0.0
     return nominal, load, weight
+
+
+def _gathered(nodes: EdgeNodes, lengths: Array, lumped: Array, load: Array) -> Array:
+    """What the nodes' loads gain when lumping is undone: from lower pressures to higher ones, edge by edge [N/mm].
+
+    The lumped projection of a pressure of curvature p'' is off by ``h^2 p''/12``: in the middle of a contact of four
+    edges' width 4 % are missing, and so much it would wear too little. A flow of ``h (p_i - p_j) / 12`` over each edge
+    makes up for it, to ``O(h^4)``, and still damps waves of two edges. No node gives more than it has: such flows are
+    the antidiffusive ones of Boris & Book (J. Comput. Phys. 11 (1973) 38).
+    """
+    first, second = nodes.of_edges.T
+    flow = lengths * (lumped[first] - lumped[second]) / 12
+    giver = np.where(flow > 0, second, first)
+    most = load / np.maximum(np.bincount(giver, minlength=len(load)), 1)
+    flow = np.clip(flow, -most[giver], most[giver])
+    return np.bincount(first, flow, len(load)) - np.bincount(second, flow, len(load))
 
 
 def _grading_bias(nodes: EdgeNodes, lengths: Array, apart: Array, mean: Array) -> Array:

@@ -197,7 +197,8 @@ def run() -> list[Check]:
             term.prepare()
             term.gather()
             if isinstance(term, FluidPressure):
-                term.wetted.Set(0.5 + 0.5 * ng.sin(ng.x + ng.y))
+                share = term.wetted.vec.FV().NumPy()
+                share[:] = rng.uniform(0, 1, len(share))
             if isinstance(term, Viscosity):
                 term.relaxed += rng.uniform(-1, 1, term.relaxed.shape)
                 term.set_time_step(0.1)

@@ -19,6 +19,10 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
     Archard's law (J. Appl. Phys. 24 (1953) 981) per reference area, ``W = k P ds / J`` with the nominal
     pressure P, so that a stretched lip loses the right volume. The sum is kept exactly.
 
+    Along a mesh edge the depth is the parabola that has the nodes' values at its ends and wears what the edge's own
+    mean pressure does. The nodes' values alone would not tell edges that bulge in turn, of more pressure than their
+    neighbours, from those that do not: no wear would ever take such waves off the outline.
+
     Parameters
     ----------
     contour : Contour
@@ -31,36 +35,31 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
     array, shape (n,)
         Depth W at each contour point times half the length of its two segments [mm²].
     """
-    share = sampled(contour, profile, amount)
-    return share * (amount.sum() / share.sum()) if share.sum() > 0 else share
-
-
-def sampled(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
-    """The same for amounts of either sign: their depth is sampled at the outline's points, the sum roughly kept."""
     n = len(contour)
     ways = np.concatenate([[0.0], np.cumsum(np.tile(contour.lengths, 2))])
 
     def way(t: Array) -> Array:
         return np.interp(t, np.arange(2 * n + 1), ways)
 
-    at_node = amount / profile.weight
     depth, covered = np.zeros(n), np.zeros(n, dtype=bool)
     a, b = profile.t[profile.edges].T
     b = np.where(b > a, b, b + n)
     segments, _ = _spans(np.floor(a + 1e-9), np.ceil(b - 1e-9))
     covered[segments % n] = True
     points, edge = _spans(np.ceil(a - 1e-9), np.floor(b + 1e-9) + 1)
-    first, last = at_node[profile.edges[edge]].T
-    # Linear along the mesh edge. Shared by integrals instead, a dent would take its neighbours' wear and deepen.
+    first, last = (amount / profile.weight)[profile.edges].T
+    load, worn = profile.load[profile.edges].sum(axis=1), amount[profile.edges].sum(axis=1)
+    rise = np.divide(worn, load, out=np.zeros_like(worn), where=load > 0) * profile.mean - 0.5 * (first + last)
     start = way(a)[edge]
     part = (way(points) - start) / (way(b)[edge] - start)
+    along = (1 - part) * first[edge] + part * last[edge] + 6 * part * (1 - part) * rise[edge]
     bears = (first != 0) | (last != 0)
-    depth[points[bears] % n] = ((1 - part) * first + part * last)[bears]
+    depth[points[bears[edge]] % n] = np.maximum(along, 0.0)[bears[edge]]
     half = 0.5 * contour.lengths * covered
     share = depth * (half + np.roll(half, 1))
     if amount.any() and not share.any():  # a contact between two points of the outline
         np.add.at(share, np.rint(profile.t).astype(int) % n, amount)
-    return share
+    return share * (amount.sum() / share.sum()) if share.sum() > 0 else share
 
 
 def _spans(start: Array, end: Array) -> tuple[NDArray[np.intp], NDArray[np.intp]]:

@@ -36,10 +36,11 @@ def test_tolerances_go_along_with_the_elements_across():
     assert half.stress_error == 4 * across.stress_error
     assert half.depth_error == 2 * across.depth_error
     assert half.wear_error == 2 * across.wear_error
-    assert half.longest_jump == 2 * across.longest_jump
+    assert Accuracy(across=2 * ALIKE).longest_jump == 0.5 * across.longest_jump
+    assert half.longest_jump == across.longest_jump == 0.1, "no longer one, with however few elements"
     assert Accuracy(across=3).wear_error == Accuracy(across=1).wear_error == 0.05
     given = Accuracy(across=6, wear_error=0.1)
-    assert (given.wear_error, given.longest_jump) == (0.1, 0.5)
+    assert (given.wear_error, given.longest_jump) == (0.1, 0.1)
     assert replace(half, order=3) == Accuracy(across=ALIKE / 2, order=3)
 
 
@@ -58,7 +59,7 @@ def test_a_companion_has_fewer_elements_across(across):
     fine = of(across)
     coarse = scaled(fine, 2.0)
     tolerance = coarse.accuracy.wear_error
-    assert coarse == of(across / 2, wear_error=tolerance, longest_jump=5 * tolerance)
+    assert coarse == of(across / 2, wear_error=tolerance, longest_jump=2 * fine.accuracy.longest_jump)
     assert tolerance == 2 * fine.accuracy.wear_error  # also where a run of its own has no looser one
     assert scaled(scaled(fine, 2.0), 2.0) == scaled(fine, 4.0)
 

@@ -71,6 +71,7 @@ def test_narrow_zones_have_elements_of_their_own():
         weight=np.full(12, 0.1),
         load=0.1 * loaded,
         edges=np.stack([np.arange(11), np.arange(1, 12)], axis=1),
+        mean=0.5 * (1.0 * loaded[1:] + loaded[:-1]),
     )
     widths = [zone.width for zone in profile.zones()]
     assert len(widths) == 3

@@ -26,6 +26,7 @@ def profile(t, depth, lengths):
         weight=weight,
         load=depth * weight,
         edges=edges,
+        mean=depth[edges].mean(axis=1),
     )
     return made, depth * weight
 
@@ -65,6 +66,34 @@ def test_share_keeps_sum_and_first_moment_for_linear_wear(rectangle):
     share = worn_share(box, made, amount)
     assert share.sum() == pytest.approx(0.5 * 1e-3 * (36 - 1) / 2, rel=1e-13)
     assert (share >= 0).all()
+
+
+def test_between_nodes_wear_is_a_parabola_of_the_mesh_edges_own_mean(rectangle):
+    box = rectangle(4.0, 2.0, 16, 8)
+    t = np.array([0.0, 4.0, 8.0, 12.0, 16.0])
+
+    def pressure(x):
+        return 1e-3 * (1 + x - 0.05 * x**2)
+
+    made, amount = profile(t, pressure(t), box.lengths)
+    mean = (pressure(t[:-1]) + 4 * pressure(t[:-1] + 2) + pressure(t[1:])) / 6  # Simpson's rule is exact
+    share = worn_share(box, ContactProfile(**{**made.__dict__, "mean": mean}), amount)
+    worn = share[1:16] / 0.25
+    assert worn / worn.mean() == pytest.approx(pressure(np.arange(1, 16)) / pressure(np.arange(1, 16)).mean(), rel=5e-3)
+    bulge = made.mean * np.array([1.0, 1.1, 0.9, 1.0])  # what all nodes' pressures would not tell
+    share = worn_share(box, ContactProfile(**{**made.__dict__, "mean": bulge}), amount)
+    plain = worn_share(box, made, amount)
+    assert share[6] / plain[6] == pytest.approx(1.15, abs=0.01)
+    assert share[10] / plain[10] == pytest.approx(0.85, abs=0.01)
+
+
+def test_where_a_contact_ends_within_a_mesh_edge_nothing_is_worn_beyond(rectangle):
+    box = rectangle(4.0, 2.0, 16, 8)
+    made, amount = profile(np.array([0.0, 8.0, 16.0]), np.array([2e-3, 1e-3, 0.0]), box.lengths)
+    share = worn_share(box, ContactProfile(**{**made.__dict__, "mean": np.array([1.5e-3, 0.2e-3])}), amount)
+    assert share.sum() == pytest.approx(amount.sum(), rel=1e-14)
+    assert (share[13:] == 0).all()
+    assert (share[:12] > 0).all()
 
 
 def test_share_across_the_outlines_end(circle):
