@@ -28,7 +28,7 @@ from ngwear.scene import Scene
 from ngwear.workers import Worker
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
-FIRST, AT = 8.0, 0.01  # elements across of the first level when so much error is asked for
+FIRST, AT = 4.0, 0.01  # elements across of the first level when so much error is asked for
 COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
 ACROSS, CPU = "elements across [-]", "CPU time [s]"

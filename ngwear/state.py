@@ -115,7 +115,8 @@ class Ledger:
         end = self.depth + self.rate * left
         if end <= 0:
             return 0.0
-        falls = 0.0 if before.rate == 0 else FALLS * (self.rate / before.rate - 1)
+        less, more = sorted((before.rate, self.rate))
+        falls = FALLS * (1 - less / more) if less > 0 else 0.0
         return max(abs(self.depth_error - before.depth_error) / end / share, falls**2)
 
 

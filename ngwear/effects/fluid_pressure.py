@@ -9,10 +9,10 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
 from ngwear.effects.contact import Contact
+from ngwear.effects.contact_profile import free_of_contact
 from ngwear.errors import SceneError
 from ngwear.geometry.body import Body
 
-CENTRE = 2 / 5  # of the way in contact: how far from its inner end a square root of the way has its centre
 STAYS = 1e-3  # of what the contacts carry: a change of the fluid's load with which the front stands
 
 
@@ -109,12 +109,9 @@ class FluidPressure(Term):
         for contact in self.contacts:
             ends = contact.touching()
             pressure = contact.end_pressures()[ends]
-            first, second = pressure.T
-            whole = first + second
-            centre = np.stack([2 * first + second, first + 2 * second], axis=1) / (3 * whole[:, None])
             touching[contact.positions[ends]] = True
-            carried += 0.5 * float(self._lengths[contact.positions[ends]] @ whole)
-            outside[contact.positions[ends]] = np.clip(1 - centre / CENTRE, 0.0, 1.0)
+            carried += float(self._lengths[contact.positions[ends]] @ pressure.mean(axis=1))
+            outside[contact.positions[ends]] = free_of_contact(pressure)
         return touching, outside, carried
 
     def force(self) -> np.ndarray:

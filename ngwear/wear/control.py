@@ -37,7 +37,7 @@ class JumpControl:
         Cycles of the next step.
     longest : int
     depth : float
-        Relative error of the greatest depth that all steps together aim at [-].
+        Relative error of the greatest depth that all steps together aim at [-]; 1 for no limit.
     """
 
     tolerance: float
@@ -59,7 +59,7 @@ class JumpControl:
 
         ``ratio`` and ``depth`` are its errors of area and depth [-], the first one nan if it is not known yet.
         """
-        off = max(ratio / self.tolerance, depth / self.depth)
+        off = max(ratio / self.tolerance, depth / self.depth if self.depth < 1 else 0.0)
         if math.isnan(ratio):
             factor = 1.0
         elif off == 0:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.state import Ledger
+from ngwear.state import FALLS, Ledger
 from ngwear.wear.archard import critical_distance, worn_share
 from ngwear.wear.control import GROWTH, SAFETY, JumpControl
 
@@ -156,7 +156,17 @@ def test_a_steps_error_of_depth_is_told_by_its_share_of_the_program():
     """Half done, 10 deep, and 2 deep a tenth: 20 at the end; 0.1 off within a tenth is 0.05 in all."""
     before, after = Ledger(depth=8.0, depth_error=-0.05), Ledger(depth=10.0, depth_error=0.05)
     assert after.depth_ratio(before, 0.1, left=0.5) == pytest.approx(0.1 / 20 / 0.1)
+    assert after.rate == pytest.approx(20.0)
     assert Ledger().depth_ratio(Ledger(), 0.1, left=0.9) == 0.0
+
+
+def test_a_change_of_the_rate_of_depth_counts_as_an_error_squared():
+    for rate in (18.0, 20.0 / 0.9):
+        before = Ledger(depth=8.0, rate=rate)
+        assert Ledger(depth=10.0).depth_ratio(before, 0.1, left=0.5) == pytest.approx((0.1 * FALLS) ** 2)
+    control = JumpControl(0.01, cycles=16)
+    control.update(0.0, 16, 0.9)
+    assert control.cycles == 32, "without a limit of the depth's error it says nothing"
 
 
 def test_longest_caps_the_growth():
