@@ -13,7 +13,7 @@ from ngwear.effects.contact_profile import free_of_contact
 from ngwear.errors import SceneError
 from ngwear.geometry.body import Body
 
-STAYS = 1e-3  # of what the contacts carry: a change of the fluid's load with which the front stands
+STAYS = 5e-4  # of what the contacts carry: a change of the fluid's load with which the front stands
 
 
 class FluidPressure(Term):
@@ -52,7 +52,7 @@ class FluidPressure(Term):
             raise SceneError("fluid.inlet", list(self.inlet), f"must name some of the fluid's edges {list(self.edges)}")
         self.pressure = ng.Parameter(0.0)
         self.loads = {"fluid pressure [MPa]": self.pressure}
-        self.leaks = False
+        self.leaks, self._solved = False, False
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         body = unknowns.body
@@ -83,7 +83,10 @@ class FluidPressure(Term):
             self._paths.append((step, np.array(path)))
 
     def refresh(self) -> bool:
-        """Find the front anew; True if it has moved by more than what may be left."""
+        """Find the front anew; True if it has moved by more than what may be left.
+
+        After a solve it otherwise stays where it was, and the state an equilibrium.
+        """
         touching, outside, carried = self._contact()
         share = np.where(self._inlet, 1.0, 0.0)
         self.leaks = False
@@ -95,9 +98,15 @@ class FluidPressure(Term):
             if len(stop) and stop[0] > 0:
                 share[path[stop[0]]] = outside[path[stop[0]], 0 if step == 1 else 1]
         field = self.wetted.vec.FV().NumPy()
-        moved = abs(self.pressure.Get()) * float(self._lengths @ np.abs(field[self._unknown] - share))
-        field[self._unknown] = share
-        return moved > STAYS * carried
+        pressure = abs(self.pressure.Get())
+        moved = pressure * float(self._lengths @ np.abs(field[self._unknown] - share)) > STAYS * carried
+        if moved or not self._solved:
+            field[self._unknown] = share
+        self._solved = False
+        return moved
+
+    def prepare(self) -> None:
+        self._solved = True
 
     def _contact(self) -> tuple[np.ndarray, np.ndarray, float]:
         """Which edges of the outline carry contact pressure, what share of each is free of it, and all that they carry.
