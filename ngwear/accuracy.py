@@ -47,10 +47,11 @@ class Accuracy:
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side. Laws of friction
         and wear may change by five times as much in a jump (``ngwear.drift``). 0.02 unless given.
     longest_jump : float or None
-        Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given, a tenth at most. Where pressures change
-        slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err
-        by would be the same in a coarser run: no comparison would show it. And a stroke of the cycle is solved with
-        what the others are expected to wear: after long jumps its pressure overshoots where they end the contact.
+        Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given, a tenth at most. Where
+        pressures change slowly, jumps end with their growth from step to step before ``wear_error`` holds them back,
+        and what they err by would be the same in a coarser run: no comparison would show it. And a stroke of the cycle
+        is solved with what the others are expected to wear: after long jumps its pressure overshoots where they end the
+        contact.
     depth_error : float or None
         What all wear steps may err by of the greatest depth, as they tell of themselves [-]: each by its share of the
         program. 1, which limits nothing, unless given, or with ``across``.
@@ -59,8 +60,8 @@ class Accuracy:
     across : float or None
         Elements across the contacts, on the average by load, instead of lengths: the run chooses ``patch`` with each
         new mesh, for each zone of a contact by its own width, and by the section's size the other lengths. Tolerances
-        that are not given go along: the stresses' and the depth's with the square of the element edge, the wear's, up to
-        0.05, and the longest jump, up to a tenth, with the edge.
+        that are not given go along: the stresses' and the depth's with the square of the element edge, the wear's, up
+        to 0.05, and the longest jump, up to a tenth, with the edge.
     error : float or None
         Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
         (``ngwear.adaptive``).
