@@ -80,7 +80,8 @@ class ContactProfile:
     """Nodal values along a contact's edges, in the order of the outline.
 
     The unknown pressure jumps between mesh edges; the nodal one is its lumped L2 projection, which damps the
-    jumps, corrected so that a linear pressure is exact on a graded mesh too, and a parabola on an even one.
+    jumps, corrected so that a linear pressure is exact on a graded mesh too. The load is nearer to the unknown: what
+    lumping takes off a curved pressure is given back to it.
 
     Attributes
     ----------
@@ -97,7 +98,7 @@ class ContactProfile:
     weight : array, shape (k,)
         Reference length that belongs to each node, int phi_i ds [mm].
     load : array, shape (k,)
-        The node's share of int P ds [N/mm]: what wears.
+        The node's share of int P ds [N/mm], see ``_gathered``: what wears.
     edges : array of int, shape (m, 2)
         The two nodes of each mesh edge.
     mean : array, shape (m,)
@@ -243,11 +244,9 @@ def nodal_pressure(
     if nodal:
         return load / weight, load, weight
     lumped = load / weight - _grading_bias(nodes, lengths, weight, pressure.mean(axis=1))
-    gain = _gathered(nodes, lengths, lumped, load)
-    nominal = np.maximum(lumped + gain / weight, 0.0)
-    load = np.maximum(load + gain, 0.0)
+    nominal = np.maximum(lumped, 0.0)
     nominal[load <= 0] = 0.0
-    return nominal, load, weight
+    return nominal, np.maximum(load + _gathered(nodes, lengths, lumped, load), 0.0), weight
 
 
 def _gathered(nodes: EdgeNodes, lengths: Array, lumped: Array, load: Array) -> Array:
