@@ -147,10 +147,15 @@ class Wearing:
                 phase.pressure[k] = worn_share(self.outline, profile, rate * profile.weight) / width
 
     def _rate(self, spec: ContactSpec, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
-        """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-]."""
+        """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-].
+
+        Explicit steps are the classic ones, by lumped pressures: the sharper ones would break up at smaller steps.
+        """
         stage = self.state.stage
         contact = stage.contacts[spec.name]
         profile = contact.profile()
+        if stage.scene.wear.scheme == "explicit":
+            profile = profile.straight()
         rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
         rate *= contact.wear_factor(profile.pressure)
         return profile, rate / contact.at_nodes(stage.elasticity.volume_ratio())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -152,6 +152,12 @@ class ContactProfile:
             mean=pressure.mean(axis=1),
             outside=free_of_contact(pressure) if wears else None,
         )
+
+    def straight(self) -> ContactProfile:
+        """The same with loads by the lumped pressures, the sum as it is, and pressures straight between nodes."""
+        load = self.nominal_pressure * self.weight
+        load = load * (self.load.sum() / load.sum()) if load.any() else load
+        return replace(self, load=load, mean=(load / self.weight)[self.edges].mean(axis=1))
 
     def between_nodes(self, values: Array) -> Array:
         """Values at the outline's points, shape (n,), as they are at the contact's nodes, and straight between them."""
