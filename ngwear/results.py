@@ -158,7 +158,7 @@ class Recorder:
                 "reference [mm]": p.reference,
                 "place [mm]": p.place,
                 "pressure [MPa]": p.pressure,
-                "nominal pressure [MPa]": p.nominal_pressure,
+                "nominal pressure [MPa]": p.load / p.weight,  # what wears
                 "gap [mm]": p.gap,
             }
             for name, p in report.contacts.items()
