@@ -9,7 +9,7 @@ from ngwear.errors import require
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
 STRESS_ERROR, WEAR_ERROR = 0.05, 0.02
-STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.004  # stress and depth error with ALIKE elements across
+STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.003  # stress and depth error with ALIKE elements across
 LOOSEST = 0.05  # wear error: beyond, with few elements across, steps err by more than the mesh, and are hard to solve
 LONGEST_JUMP, LONGEST = 5.0, 0.1  # times the wear error, and of the program at most
 ALIKE = 12.0
