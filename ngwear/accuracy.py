@@ -9,7 +9,7 @@ from ngwear.errors import require
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
 STRESS_ERROR, WEAR_ERROR = 0.05, 0.02
-STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.003  # stress and depth error with ALIKE elements across
+STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.008  # stress and depth error with ALIKE elements across
 LOOSEST = 0.05  # wear error: beyond, with few elements across, steps err by more than the mesh, and are hard to solve
 LONGEST_JUMP, LONGEST = 5.0, 0.1  # times the wear error, and of the program at most
 ALIKE = 12.0
@@ -60,8 +60,8 @@ class Accuracy:
     across : float or None
         Elements across the contacts, on the average by load, instead of lengths: the run chooses ``patch`` with each
         new mesh, for each zone of a contact by its own width, and by the section's size the other lengths. Tolerances
-        that are not given go along: the stresses' and the depth's with the square of the element edge, the wear's, up
-        to 0.05, and the longest jump, up to a tenth, with the edge.
+        that are not given go along: the stresses' with the square of the element edge, the depth's, the wear's, up to
+        0.05, and the longest jump, up to a tenth, with the edge.
     error : float or None
         Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
         (``ngwear.adaptive``).
@@ -133,7 +133,7 @@ class Accuracy:
             return
         finer = 1.0 if self.across is None else ALIKE / self.across
         self._default("stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2))
-        self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer**2))
+        self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer))
         self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
         self._default("longest_jump", min(LONGEST, LONGEST_JUMP * self.wear_error))
         require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")

@@ -28,14 +28,14 @@ from ngwear.scene import Scene
 from ngwear.workers import Worker
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
-FIRST, AT = 5.0, 0.01  # elements across of the first level when so much error is asked for
+FIRST, AT = 4.0, 0.01  # elements across of the first level when so much error is asked for
 COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
 ACROSS, CPU = "elements across [-]", "CPU time [s]"
 
 
 def first_across(error: float) -> float:
-    """Elements across the contacts to begin with: 5 for 1 %, twice as many for half of it, from 2.5 to 32."""
+    """Elements across the contacts to begin with: 4 for 1 %, twice as many for half of it, from 2.5 to 32."""
     return min(max(FIRST * 2.0 ** math.ceil(math.log2(AT / error) - 1e-9), COARSEST_FIRST), FINEST_FIRST)
 
 

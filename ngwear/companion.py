@@ -66,7 +66,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
         "stress_error": min(1.0, factor**2 * accuracy.stress_error),
         "wear_error": min(0.5, factor * accuracy.wear_error),
         "longest_jump": min(1.0, factor * accuracy.longest_jump),
-        "depth_error": min(1.0, factor**2 * accuracy.depth_error),
+        "depth_error": min(1.0, factor * accuracy.depth_error),
     }
     if accuracy.across is not None:
         across = max(accuracy.across / factor, LEAST_ACROSS)

@@ -129,7 +129,6 @@ class Contact(UnilateralContact):
             place=np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1),
             gap=self._sample(self.gap(self._state)),
             nodal=self.order == 1,
-            wears=self.wears and self.order > 1,
         )
 
     def nodal_pressure(self) -> Array:

@@ -103,9 +103,6 @@ class ContactProfile:
         The two nodes of each mesh edge.
     mean : array, shape (m,)
         Mean nominal pressure of each mesh edge [MPa].
-    outside : array, shape (m, 2), or None
-        What share of each mesh edge is free of contact if that ends within it (``free_of_contact``), of a contact that
-        wears.
     """
 
     t: Array
@@ -118,7 +115,6 @@ class ContactProfile:
     load: Array
     edges: NDArray[np.intp]
     mean: Array
-    outside: Array | None = None
 
     @classmethod
     def from_samples(
@@ -132,7 +128,6 @@ class ContactProfile:
         place: Array,
         gap: Array,
         nodal: bool = False,
-        wears: bool = False,
     ) -> ContactProfile:
         """Build from lengths of the mesh edges, shape (m,) [mm], and samples at both ends of each.
 
@@ -150,7 +145,6 @@ class ContactProfile:
             load=load,
             edges=nodes.of_edges,
             mean=pressure.mean(axis=1),
-            outside=free_of_contact(pressure) if wears else None,
         )
 
     def straight(self) -> ContactProfile:
@@ -189,17 +183,14 @@ class ContactProfile:
         return Zone(start, end, float(self.pressure[a:b].max()), width, slice(a, b))
 
     def _edge(self, node: int, step: int) -> Array:
-        """Where the contact ends beside its outermost loaded node.
+        """Where the gap closes beyond the outermost loaded node.
 
-        Where the pressure of the last mesh edge that carries any says so, in a contact that wears: it ends at a kink,
-        and no gap beyond that tells where. In any other one where the gap closes: outside it grows with the power 3/2
-        of the distance, so that gap^(2/3) is linear in it; its zero lies between the loaded and the first open node.
+        Outside a contact the gap grows with the power 3/2 of the distance, so that gap^(2/3) is linear in it; its
+        zero lies between the loaded and the first open node.
         """
         first, second = node + step, node + 2 * step
         if not 0 <= first < len(self.t):
             return self.place[node]
-        if self.outside is not None:
-            return self._end_of_pressure(node, step)
         near = np.linalg.norm(self.place[first] - self.place[node])
         fraction = 0.5
         if 0 <= second < len(self.t) and self.gap[second] > self.gap[first] > 0:
@@ -207,15 +198,6 @@ class ContactProfile:
             apart = np.linalg.norm(self.place[second] - self.place[first])
             fraction = float(np.clip(1 - self.gap[first] ** (2 / 3) / rise * apart / near, -1.0, 1.0))
         return self.place[node] + fraction * (self.place[first] - self.place[node])
-
-    def _end_of_pressure(self, node: int, step: int) -> Array:
-        """The end of the contact in the mesh edge beyond its outermost loaded node, or within if that one is bare."""
-        for inner, outer in ((node, node + step), (node - step, node)):
-            pair = (self.edges == min(inner, outer)).any(axis=1) & (self.edges == max(inner, outer)).any(axis=1)
-            for edge in np.flatnonzero(pair & (self.mean > 0)):
-                free = self.outside[edge, 0 if step < 0 else 1]
-                return self.place[outer] + free * (self.place[inner] - self.place[outer])
-        return self.place[node]
 
 
 def free_of_contact(pressure: Array) -> Array:

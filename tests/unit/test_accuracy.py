@@ -34,7 +34,7 @@ def test_tolerances_go_along_with_the_elements_across():
     assert default.depth_error == 1.0, "lengths say nothing of it"
     half = Accuracy(across=ALIKE / 2)
     assert half.stress_error == 4 * across.stress_error
-    assert half.depth_error == 4 * across.depth_error
+    assert half.depth_error == 2 * across.depth_error
     assert half.wear_error == 2 * across.wear_error
     assert Accuracy(across=2 * ALIKE).longest_jump == 0.5 * across.longest_jump
     assert half.longest_jump == across.longest_jump == 0.1, "no longer one, with however few elements"

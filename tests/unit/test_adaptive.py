@@ -28,7 +28,7 @@ def coarse_first(monkeypatch):
 
 @pytest.mark.parametrize(
     ("error", "across"),
-    [(0.3, 2.5), (0.05, 2.5), (0.02, 2.5), (0.01, 5), (0.005, 10), (0.0025, 20), (0.002, 32), (0.001, 32)],
+    [(0.3, 2.5), (0.05, 2.5), (0.02, 2.5), (0.01, 4), (0.005, 8), (0.0025, 16), (0.002, 32), (0.001, 32)],
 )
 def test_the_first_level_by_the_error(error, across):
     assert first_across(error) == across
