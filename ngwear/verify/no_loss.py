@@ -72,7 +72,7 @@ def by_hand(scene: Scene) -> Array:
         if number == 0 or len(scene.program.cycle) > 1:
             advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.25))
         settle(problem, StepOptions(), Work())
-        points, profile = body.contour.points, contact.profile()
+        points, profile = body.contour.points, contact.profile().straight()
         node = np.rint(profile.t).astype(int)
         after, before = (node + 1) % len(points), node - 1
         vertices = np.append(body.outline.vertices[:, 0], 0)[node]
