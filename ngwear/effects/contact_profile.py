@@ -13,8 +13,6 @@ from ngwear.geometry.contour import Contour
 
 Array = NDArray[np.float64]
 
-CENTRE = 2 / 5  # of the way in contact: how far from its inner end a square root of the way has its centre
-
 
 @dataclass(frozen=True)
 class Zone:
@@ -198,21 +196,6 @@ class ContactProfile:
             apart = np.linalg.norm(self.place[second] - self.place[first])
             fraction = float(np.clip(1 - self.gap[first] ** (2 / 3) / rise * apart / near, -1.0, 1.0))
         return self.place[node] + fraction * (self.place[first] - self.place[node])
-
-
-def free_of_contact(pressure: Array) -> Array:
-    """What share of each mesh edge is free of contact, if that ends within it; of the edges' pressures, shape (m, 2).
-
-    The result is of the same shape: of contacts that end towards the first node, and towards the second. A pressure
-    begins as the square root of the distance from the contact's end, so that over the way L in contact its centre lies
-    at 2/5 L from the edge's inner end: L follows from the linear pressure that the mesh edge carries. 0 where it
-    carries none.
-    """
-    first, second = pressure.T
-    whole = first + second
-    thirds = np.stack([2 * first + second, first + 2 * second], axis=1)
-    centre = np.divide(thirds, 3 * whole[:, None], out=np.full_like(thirds, CENTRE), where=whole[:, None] > 0)
-    return np.clip(1 - centre / CENTRE, 0.0, 1.0)
 
 
 def nodal_pressure(

@@ -9,10 +9,10 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
 from ngwear.effects.contact import Contact
-from ngwear.effects.contact_profile import free_of_contact
 from ngwear.errors import SceneError
 from ngwear.geometry.body import Body
 
+CENTRE = 2 / 5  # of the way in contact: how far from its inner end a square root of the way has its centre
 STAYS = 5e-4  # of what the contacts carry: a change of the fluid's load with which the front stands
 
 
@@ -20,10 +20,9 @@ class FluidPressure(Term):
     """Follower traction ``-chi p n`` on the wetted part of named edges.
 
     chi is 1 from the inlet edges, in both directions along the outline, up to the first mesh edge in contact, and 0
-    beyond that one; on it, chi is the share of its length outside the contact. A contact's pressure begins as the
-    square root of the distance from where it ends, so that over the way L in contact its centre lies at 2/5 L from the
-    edge's inner end: L follows from the linear pressure that the mesh edge carries. (To count such an edge as dry moves
-    the front by half an edge on the average, and where coarse edges end a static contact the load by per cents.)
+    beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``). To count such an
+    edge as dry moves the front by half an edge on the average, and where coarse edges end a static contact the load by
+    per cents.
 
     chi is fixed in a solve and found anew after it, until it moves no load of more than ``STAYS``. If the fluid meets
     no contact before the named edges end, ``leaks`` is True: the seal does not hold.
@@ -130,3 +129,18 @@ class FluidPressure(Term):
         scale = -self.pressure.Get() * self.wetted * kinematics.weight
         measure = ng.ds(definedon=self._region, bonus_intorder=2)
         return np.array([ng.Integrate(scale * area[k] * measure, self._body.mesh) for k in range(2)])
+
+
+def free_of_contact(pressure: np.ndarray) -> np.ndarray:
+    """What share of each mesh edge is free of contact, if that ends within it; of the edges' pressures, shape (m, 2).
+
+    The result is of the same shape: of contacts that end towards the first node, and towards the second. A pressure
+    begins as the square root of the distance from the contact's end, so that over the way L in contact its centre lies
+    at 2/5 L from the edge's inner end: L follows from the linear pressure that the mesh edge carries. 0 where it
+    carries none.
+    """
+    first, second = pressure.T
+    whole = first + second
+    thirds = np.stack([2 * first + second, first + 2 * second], axis=1)
+    centre = np.divide(thirds, 3 * whole[:, None], out=np.full_like(thirds, CENTRE), where=whole[:, None] > 0)
+    return np.clip(1 - centre / CENTRE, 0.0, 1.0)

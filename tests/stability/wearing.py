@@ -96,7 +96,7 @@ def from_a_gap(gap) -> list[Finding]:
     for away in (0.0, gap):
         roller = Cylinder(centre=(2.0, 3.0 + away), radius=2.0)
         outline = Contour.rectangle((0.0, 4.0), (0.0, 1.0))
-        scene = pressed_by(roller, outline, force=0.5, travel=1.0, strokes=1, rate=0.0)
+        scene = pressed_by(roller, outline, force=0.5, travel=1.0, strokes=1, rate=0.0, patch=0.1)
         stepper = Stepper(scene)
         state = stepper.start()
         contact = state.stage.contacts["counter"]
