@@ -9,12 +9,12 @@ from ngwear.errors import require
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
 STRESS_ERROR, WEAR_ERROR = 0.05, 0.02
-STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.008  # stress and depth error with ALIKE elements across
+STRESS_ACROSS, DEPTH_ACROSS = 0.2, 0.006  # stress and depth error with ALIKE elements across
 LOOSEST = 0.05  # wear error: beyond, with few elements across, steps err by more than the mesh, and are hard to solve
-LONGEST_JUMP, LONGEST = 5.0, 0.1  # times the wear error, and of the program at most
+LONGEST_JUMP = 5.0  # times the wear error
 ALIKE = 12.0
-GRADING, STEEPEST = 0.25, 0.5  # with ALIKE elements across or more, and with 2
-STEEPER = 0.4  # power of the grading's growth with fewer elements: with more, stresses ask for more and more meshes
+GRADING = 0.25  # of lengths
+GRADING_ACROSS, STEEPER, STEEPEST = 0.4, 0.4, 0.5  # with ALIKE elements across; power of its growth with fewer; most
 TOLERANCES = ("stress_error", "wear_error", "longest_jump", "depth_error")
 LEAST_ACROSS, MOST_ACROSS = 0.5, 200.0
 LEAST_ERROR = 1e-3  # what two meshes differ by where nodes happen to fall, measured on the shipped scenes
@@ -35,8 +35,8 @@ class Accuracy:
         Element edge at the followed edges' finest while the part is mounted [mm]; the mesh is refined after. 0.03
         unless given.
     grading : float or None
-        Growth of the element edge with the distance from the patch [-]; 0.25 unless given, up to 0.5 with fewer
-        elements across the contacts.
+        Growth of the element edge with the distance from the patch [-]; 0.25 unless given; with ``across`` 0.4 for 12,
+        up to 0.5 for fewer: the stresses' error then asks for what is missing.
     order : int
         Polynomial order of the displacement: 1, 2 or 3, of which 3 converges fastest where all is smooth; the contact's
         edges are not. ``ngwear cost`` compares them on a scene's own elements: see ``costs.knobs``.
@@ -47,11 +47,10 @@ class Accuracy:
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side. Laws of friction
         and wear may change by five times as much in a jump (``ngwear.drift``). 0.02 unless given.
     longest_jump : float or None
-        Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given, a tenth at most. Where
-        pressures change slowly, jumps end with their growth from step to step before ``wear_error`` holds them back,
-        and what they err by would be the same in a coarser run: no comparison would show it. And a stroke of the cycle
-        is solved with what the others are expected to wear: after long jumps its pressure overshoots where they end the
-        contact.
+        Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given. Where pressures change
+        slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err by
+        would be the same in a coarser run: no comparison would show it. And a stroke of the cycle is solved with what
+        the others are expected to wear: after long jumps its pressure overshoots where they end the contact.
     depth_error : float or None
         What all wear steps may err by of the greatest depth, as they tell of themselves [-]: each by its share of the
         program. 1, which limits nothing, unless given, or with ``across``.
@@ -61,7 +60,7 @@ class Accuracy:
         Elements across the contacts, on the average by load, instead of lengths: the run chooses ``patch`` with each
         new mesh, for each zone of a contact by its own width, and by the section's size the other lengths. Tolerances
         that are not given go along: the stresses' with the square of the element edge, the depth's, the wear's, up to
-        0.05, and the longest jump, up to a tenth, with the edge.
+        0.05, and the longest jump with the edge.
     error : float or None
         Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
         (``ngwear.adaptive``).
@@ -135,7 +134,7 @@ class Accuracy:
         self._default("stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2))
         self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer))
         self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
-        self._default("longest_jump", min(LONGEST, LONGEST_JUMP * self.wear_error))
+        self._default("longest_jump", min(1.0, LONGEST_JUMP * self.wear_error))
         require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
         require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
         require(0 < self.longest_jump <= 1, "accuracy.longest_jump", self.longest_jump, "must lie between 0 and 1")
@@ -174,4 +173,4 @@ class Accuracy:
 
 def _usual_grading(across: float | None) -> float:
     """Of so many elements across; of lengths if None."""
-    return GRADING if across is None else min(STEEPEST, GRADING * max(1.0, ALIKE / across) ** STEEPER)
+    return GRADING if across is None else min(STEEPEST, GRADING_ACROSS * (ALIKE / across) ** STEEPER)

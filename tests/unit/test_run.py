@@ -238,7 +238,7 @@ def jumping(folder, write_sheet):
         ("strokes = 4", "strokes = 16"),
         ("travel = 10.0", back),
         ('step = "each"', 'step = "jump"'),
-        ("patch = 0.1", "patch = 0.1\nwear_error = 0.05\nlongest_jump = 0.25"),
+        ("patch = 0.1", "patch = 0.1\nwear_error = 0.05"),
     )
 
 
