@@ -48,9 +48,9 @@ class Accuracy:
         and wear may change by five times as much in a jump (``ngwear.drift``). 0.02 unless given.
     longest_jump : float or None
         Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given. Where pressures change
-        slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err by
-        would be the same in a coarser run: no comparison would show it. And a stroke of the cycle is solved with what
-        the others are expected to wear: after long jumps its pressure overshoots where they end the contact.
+        slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err
+        by would be the same in a coarser run: no comparison would show it. And a stroke of the cycle is solved with
+        what the others are expected to wear: after long jumps its pressure overshoots where they end the contact.
     depth_error : float or None
         What all wear steps may err by of the greatest depth, as they tell of themselves [-]: each by its share of the
         program. 1, which limits nothing, unless given, or with ``across``.
