@@ -22,11 +22,18 @@ def test_an_order_is_seen_and_the_error_exact(order, ratio):
     assert error_of_finest(*levels, ratio=ratio) == pytest.approx(0.01 * LENGTH)
 
 
-@pytest.mark.parametrize(("order", "taken"), [(0.1, LOWEST), (5.0, HIGHEST)])
+@pytest.mark.parametrize(("order", "taken"), [(0.1, LOWEST), (2.5, HIGHEST)])
 def test_orders_out_of_reason_are_not_believed(order, taken):
     levels = readings(order)
     assert order_seen(*levels) == taken
     assert error_of_finest(*levels) == pytest.approx(0.01 * (2**order - 1) / (2**taken - 1) * LENGTH)
+
+
+@pytest.mark.parametrize("coarsest", [1.6, 0.4])
+def test_a_coarsest_level_far_off_is_left_out(coarsest):
+    first, second, _ = readings(1.0)
+    assert error_of_finest(first, second, coarsest * PLACES) == error_of_finest(first, second)
+    assert error_of_finest(first, second, (1.0 + 0.5 * (coarsest - 1.0)) * PLACES) != error_of_finest(first, second)
 
 
 def test_two_levels_are_of_first_order():
