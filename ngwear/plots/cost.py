@@ -110,10 +110,11 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
         colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
         reference = f"against {ladder.labels[max(rungs)]}{told}"
         axis.loglog(x, y, marker + "-", color=colour, ms=6, lw=1.0, label=f"{ladder.name}, {reference}")
-        for i, place in zip(others, zip(x, y, strict=True), strict=True):
+        for n, (i, place) in enumerate(zip(others, zip(x, y, strict=True), strict=True)):
             text = ladder.labels[i].removeprefix("wear_error ").removeprefix("stress_error ")
             own = i == ladder.own and rung_of(study.base, k, i) in study.runs
-            below = i % 2 == 1  # neighbours' labels keep clear of each other
+            foot, top = n + 1 < len(y) and y[n] < y[n + 1], n > 0 and y[n - 1] < y[n]
+            below = foot or (i % 2 == 1 and not top)  # neighbours' labels keep clear of each other, and of the line
             axis.annotate(
                 text, place, xytext=(5, -11 if below else 5), textcoords="offset points", fontsize=7.5, color=colour,
                 fontweight="bold" if own else "normal",
