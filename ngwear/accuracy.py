@@ -36,7 +36,7 @@ class Accuracy:
         unless given.
     grading : float or None
         Growth of the element edge with the distance from the patch [-]; 0.25 unless given; with ``across`` 0.4 for 12,
-        up to 0.5 for fewer: the stresses' error then asks for what is missing.
+        up to 0.5 for fewer and less for more: the stresses' error asks for what is missing.
     order : int
         Polynomial order of the displacement: 1, 2 or 3, of which 3 converges fastest where all is smooth; the contact's
         edges are not. ``ngwear cost`` compares them on a scene's own elements: see ``costs.knobs``.

@@ -15,11 +15,11 @@ The section that loses elements is in ``torn_seal``, which has the run on finer 
 One of 24 misses the band, on the safe side: the pin's contact area (3.8), whose coarser reading is too far off for the
 order that is taken.
 
-These are not blind: the bounds of the order and what counts as scatter (``ngwear.seen_order``), the pin's order, the
-share of what is torn, and that no less of the depth's error is stated than the jumps tell, were settled with these
-scenes' errors in view. So were the shaft's longest jump (with 0.12 its contact's width is at 0.35) and that friction is
-read along the last half (at the end alone, the seal that remembers is at 2.9 to 3.2). At other levels, and on other
-scenes, expect more to miss, widths of contacts and coarse levels first.
+These are not blind: the bounds of the order, what counts as scatter and which coarsest run is left out
+(``ngwear.seen_order``), the pin's order, the share of what is torn, and that no less of the depth's error is stated
+than the jumps tell, were settled with these scenes' errors in view. So were the shaft's longest jump (with 0.12 its
+contact's width is at 0.35) and that friction is read along the last half (at the end alone, the seal that remembers is
+at 2.9 to 3.2). At other levels, and on other scenes, expect more to miss, widths of contacts and coarse levels first.
 
 Takes an hour, nearly half of it the pin's finer mesh.
 """

@@ -23,12 +23,13 @@ On the way there, after 6,000 strokes, the reference is a half-plane with Flaman
 The scene is a user's: two strokes a cycle under force, cycle jumps. The legs' elements are as the stresses ask: where
 they are coarse, the legs are stiff, a stroke takes friction and slip with it, and all wears faster than the half-plane
 that gives way as the legs should. On the way what is worn depends on the elements at the stick zone's ends: it is 13 %
-short on those of 0.05 mm, so that part has finer ones.
+short on those of 0.05 mm (``FINEST``), so that part has finer ones.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -52,7 +53,8 @@ BLOCK, LEG = 40.0, 8.0  # height of block and legs, and half the block's width; 
 CASE = "partial_slip_wear"
 PATCHES, FINEST = (0.1, 0.05), 0.025
 ON_THE_WAY, LATE = 6_000, 12_000
-HALF_PLANE = {"p(0) / p0": 1.1169, "area": 3.638e-4}  # of D / (2 mu P) = 0.638, as the legs give way
+SHARE = 0.638  # D / (2 mu P), as the legs give way, and of the half-plane
+HALF_PLANE = {"p(0) / p0": 1.1169, "area": 3.638e-4}
 
 
 def scene(patch: float) -> Scene:
@@ -130,11 +132,7 @@ def late(patch: float) -> list[Check]:
     wanted = (math.acosh(deepest / c) - deepest * math.sqrt(deepest**2 - c**2)) / (2 * RADIUS)
     top = state.contour.points[:, 1] > 2 * BLOCK - 0.1
     depth = 2 * BLOCK - float(state.contour.points[top & inner(state), 1].min())
-    seconds = clock.seconds
-
-    def check(quantity: str, value: float, reference: float, tolerance: float, bound: str = "near") -> Check:
-        return Check(CASE, f"{quantity}, elements of {patch} mm", value, reference, tolerance, seconds, bound=bound)
-
+    check = _checker(patch, clock.seconds)
     return [
         check("change of friction, last over first [-]", last / first, 1.0, 5e-3),
         check("half width that sticks [mm]", stick_width(state), c - 2 * patch, math.nan, "above"),
@@ -148,15 +146,25 @@ def on_the_way(patch: float) -> list[Check]:
     """The first half of the strokes, against the half-plane."""
     clock, whole = Stopwatch(), scene(patch)
     stepper = Stepper(replace(whole, program=replace(whole.program, strokes=ON_THE_WAY)))
-    state = stepper.start()
+    state = stepper.advance(stepper.start())
+    share = friction_range(state) / (2 * MU * LOAD)
     while not stepper.finished(state):
         state = stepper.advance(state)
-    name, seconds = f"after 6,000 strokes [{{}}], elements of {patch} mm", clock.seconds
-    pressure, area = HALF_PLANE["p(0) / p0"], HALF_PLANE["area"]
+    check = _checker(patch, clock.seconds)
     return [
-        Check(CASE, f"p(0) / p0 {name.format('-')}", middle_pressure(state), pressure, 0.01, seconds),
-        Check(CASE, f"worn area {name.format('mm²')}", state.ledger.removed, area, 0.05, seconds),
+        check("change of friction over 2 mu P, the half-plane's [-]", share, SHARE, 5e-3),
+        check("p(0) / p0 after 6,000 strokes [-]", middle_pressure(state), HALF_PLANE["p(0) / p0"], 0.01),
+        check("worn area after 6,000 strokes [mm²]", state.ledger.removed, HALF_PLANE["area"], 0.05),
     ]
+
+
+def _checker(patch: float, seconds: float) -> Callable[..., Check]:
+    """Checks of a mesh, which their names tell."""
+
+    def check(quantity: str, value: float, reference: float, tolerance: float, bound: str = "near") -> Check:
+        return Check(CASE, f"{quantity}, elements of {patch} mm", value, reference, tolerance, seconds, bound=bound)
+
+    return check
 
 
 def inner(state: State) -> NDArray[np.bool_]:

@@ -10,7 +10,18 @@ import sys
 
 import numpy as np
 
-from ngwear.verify.partial_slip_wear import HALF_WIDTH, LATE, LOAD, MATERIAL, MU, ON_THE_WAY, PEAK, RADIUS, WEAR_RATE
+from ngwear.verify.partial_slip_wear import (
+    HALF_WIDTH,
+    LATE,
+    LOAD,
+    MATERIAL,
+    MU,
+    ON_THE_WAY,
+    PEAK,
+    RADIUS,
+    SHARE,
+    WEAR_RATE,
+)
 
 REACH, GROWTH, FIRST = 1.5, 0.05, 20.0
 
@@ -42,7 +53,7 @@ def press(gap, compliance, load, cell, on, give=None):
     raise RuntimeError("the active set does not settle: take another cell")
 
 
-def main(cell=0.005, share=0.638):
+def main(cell=0.005, share=SHARE):
     n = 2 * round(REACH / cell) + 1
     x, compliance = (np.arange(n) - n // 2) * cell, influence(n, cell)
     worn, touching, sticking = np.zeros(n), np.abs(x) < HALF_WIDTH, np.abs(x) < 0.5 * HALF_WIDTH
