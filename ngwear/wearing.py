@@ -163,15 +163,18 @@ class Wearing:
     def _book_depths(self, worn: Array, error: Array) -> None:
         """Add a step's depth and its error at the points of the outline to the run's [mm].
 
-        Where a scene lets cycles be jumped, single ones are what it asks for: only jumps err.
+        Where a scene lets cycles be jumped, single ones are what it asks for: only jumps err. The greatest depth grows
+        by what it does at the points of this step: those of a new mesh may miss the deepest place of the one before,
+        and that is nothing that a step wears, or errs by.
         """
         state = self.state
         asked = state.stage.scene.wear.step == "jump" and self.sliding.repeats <= 1
         step = np.stack([worn, 0.0 * error if asked else error])
-        state.depths = step if state.depths is None else state.depths + step
-        depth, error = state.depths
-        state.ledger.depth = float(depth.max())
-        state.ledger.depth_error = state.ledger.depth - float((depth - error).max())
+        before = np.zeros_like(step) if state.depths is None else state.depths
+        state.depths = before + step
+        (depth, exact), (last, last_exact) = ((d.max(), (d - e).max()) for d, e in (state.depths, before))
+        state.ledger.depth += float(depth - last)
+        state.ledger.depth_error += float((depth - exact) - (last - last_exact))
 
     def take(self) -> bool:
         """Take the worn area off the outline; return whether its error is known.
