@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # no memory, no import of it
 
 Array = NDArray[np.float64]
 
-FALLS = 2.0  # change of the rate of depth from step to step, whose square counts as an error: see depth_ratio
+FALLS = 1.7  # change of the rate of depth over a step, whose square counts as an error: see depth_ratio
 
 
 @dataclass
@@ -71,8 +71,9 @@ class Ledger:
         Area taken off the outline's polygon [mm²].
     moment : float
         First moment of that area about y = 0 [mm³]: about the axis of a ring, 2 pi times it is the worn volume.
-    depth, rate : float
-        Greatest depth worn off the outline [mm], and what the last step added to it over its share of the program [mm].
+    depth, rate, share : float
+        Greatest depth worn off the outline [mm], what the last step added to it over its share of the program [mm], and
+        that share [-].
     area_error : float
         Sum of the steps' embedded errors of worn area [mm²].
     depth_error : float
@@ -91,6 +92,7 @@ class Ledger:
     moment: float = 0.0
     depth: float = 0.0
     rate: float = 0.0
+    share: float = 0.0
     area_error: float = 0.0
     depth_error: float = 0.0
     remesh_jump: float = 0.0
@@ -107,16 +109,17 @@ class Ledger:
 
         The rate of the step is taken for what is ``left`` of the program; both shares are fractions of it. What a step
         tells of itself changes its sign now and then, and the next one would be far too long; and it cannot see a
-        contact's end that runs past whole elements. So the change of the rate since the step before, ``FALLS`` times
-        and squared, counts as much, for a step as for the program.
+        contact's end that runs past whole elements. So the change of the rate over the step, ``FALLS`` times and
+        squared, counts as much, for a step as for the program. What it changes by since the step before, it does from
+        the middle of that to the middle of this one: over its own length in proportion.
         """
         grown = self.depth - before.depth
-        self.rate = grown / share
+        self.rate, self.share = grown / share, share
         end = self.depth + self.rate * left
         if end <= 0:
             return 0.0
         less, more = sorted((before.rate, self.rate))
-        falls = FALLS * (1 - less / more) if less > 0 else 0.0
+        falls = FALLS * (1 - less / more) * 2 * share / (before.share + share) if less > 0 else 0.0
         return max(abs(self.depth_error - before.depth_error) / end / share, falls**2)
 
 
