@@ -161,7 +161,7 @@ def test_a_steps_error_of_depth_is_told_by_its_share_of_the_program():
 
 
 def test_a_change_of_the_rate_of_depth_counts_as_an_error_squared():
-    """All of it in a step as long as the one before, half of it in one of a third of that, 3/2 of it in one of thrice."""
+    """All of it in a step as long as the one before, half in one of a third of its length, 3/2 in one of thrice."""
     for rate in (18.0, 20.0 / 0.9):
         for share, part in ((0.1, 1.0), (0.3, 0.5), (0.1 / 3, 1.5)):
             before = Ledger(depth=8.0, rate=rate, share=share)
