@@ -14,6 +14,7 @@ from ngwear.errors import SceneError
 CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended
 FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
 OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
+BEYOND = 30.0  # s: what a run may take that only tells what one takes, where the budget did not even show that
 TOGETHER = 0.4  # of what is then left: what a run with all knobs at their finest may take
 Measure = Callable[[Setting, float], Measurement]
 
@@ -106,7 +107,7 @@ def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
         rung -= 1
     if mesh.own > first and study.next_seconds(0, mesh.own) <= FIRST * (budget - study.spent):
         _run(study, study.own, budget, measure)
-    _refuse_if_none_fits(study, budget)
+    _refuse_if_none_fits(study, budget, measure)
     walls = {rung: run.wall for rung, run in study.rungs(0).items()}
     left = OTHERS * (budget - study.spent)
     fit = [rung for rung, wall in walls.items() if wall * _other_runs(study) <= left]
@@ -146,19 +147,32 @@ def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:
         study.left_out[rung_of(study.base, k, own)] = study.next_seconds(k, own)
 
 
-def _refuse_if_none_fits(study: Study, budget: float) -> None:
-    """SceneError if all that was run had to be stopped."""
+def _refuse_if_none_fits(study: Study, budget: float, measure: Measure) -> None:
+    """SceneError if all that was run had to be stopped; it says what one run takes.
+
+    Where the budget ended before that could be told, a run beyond it of at most ``BEYOND`` seconds tells.
+    """
     stopped = {setting: run for setting, run in study.runs.items() if run.status == STOPPED}
     if not stopped or len(stopped) < len(study.runs):
         return
     setting = min(stopped, key=lambda s: (stopped[s].needed if math.isfinite(stopped[s].needed) else math.inf, s))
-    needed, label = stopped[setting].needed, study.ladders[0].labels[setting[0]]
+    run, told = stopped[setting], ""
+    if not math.isfinite(run.needed):
+        run = measure(setting, BEYOND)
+        told = f", as a run of {_rounded(run.wall)} s beyond the budget tells"
+    needed = run.needed if run.status == STOPPED else run.wall
     known = math.isfinite(needed)
-    takes = f"about {needed:.2g} s" if known else f"more than {stopped[setting].wall:.2g} s"
-    give = f"give {10 * needed:.2g} s or more for a study" if known else "give many times as much"
+    takes = f"about {_rounded(needed)} s" if known else f"more than {_rounded(run.wall)} s"
+    give = f"give {_rounded(10 * needed)} s or more for a study" if known else "give many times as much"
+    label = study.ladders[0].labels[setting[0]]
     raise SceneError(
-        "cost.budget", budget, f"does not reach for one run: on a mesh of {label} it takes {takes}; {give}"
+        "cost.budget", budget, f"does not reach for one run: on a mesh of {label} it takes {takes}{told}; {give}"
     )
+
+
+def _rounded(seconds: float) -> str:
+    """Two digits, never as a power of ten."""
+    return f"{float(f'{seconds:.2g}'):g}"
 
 
 def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
