@@ -9,8 +9,8 @@ The error is that of the maximum depth, over its last value: the largest one alo
 the history is drawn, and beside it that at the end, where steps that were far too long may have made up for each other.
 The reference has twice as many elements across as the finest level, and steps of a hundredth of the program. For each
 level the cheapest fixed setting is sought that errs no more, by processor time of the run, after a short one that loads
-all packages. Level and setting are then run again, by turns, and the least time of each counts: a machine that is shared
-is slower from one minute to the next.
+all packages. Level and setting are then run again, by turns, and the least time of each counts: a shared machine is
+slower from one minute to the next.
 
 Usage: python adaptive_against_fixed.py [SCENE ...]
        python adaptive_against_fixed.py --subject KIND SETTING JUMP SCENE
