@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import json
 import logging
+import os
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -86,13 +87,18 @@ def main(arguments: list[str] | None = None) -> int:
     logging.basicConfig(level=logging.WARNING, format="ngwear: %(message)s")
     options = _parser().parse_args(arguments)
     try:
-        return options.do(options)
+        code = options.do(options)
+        sys.stdout.flush()
+        return code
     except NgwearError as error:
         print(f"ngwear: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
         print(f"ngwear: interrupted; {getattr(options, 'again', 'go on with --resume')}", file=sys.stderr)
         return 130
+    except BrokenPipeError:  # who reads the output, such as head, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python's own end would tell it once more
+        return 141
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -163,6 +163,16 @@ def test_explain_names_what_is_in_and_what_is_left_out(sheet_file, capsys):
     assert "left out: viscosity" in capsys.readouterr().out
 
 
+def test_a_reader_that_has_seen_enough_is_no_error(sheet_file):
+    """As ``| head`` is, which closes its end."""
+    code = f"import sys; from ngwear.cli import main; sys.exit(main(['explain', {str(sheet_file)!r}]))"
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run([sys.executable, "-c", code], stdout=write, stderr=subprocess.PIPE, text=True)
+    os.close(write)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
 def test_verify_of_an_unknown_case(capsys):
     assert main(["verify", "moon"]) == BAD_INPUT
     assert "moon" in capsys.readouterr().err
