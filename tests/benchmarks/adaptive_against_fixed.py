@@ -27,9 +27,9 @@ GEOMETRIES = Path(__file__).parents[2] / "geometries"
 DEPTH, STROKE, KIND = "maximum depth [mm]", "stroke [-]", "kind [-]"
 STEP = 0.01  # of the program: the reference's longest
 FEW = 2.0  # elements across
-CASES = {  # of each scene: elements across, edges [mm], cycles in a jump
-    "shaft_on_plate": ((3.0, 6.0, 12.0, 24.0), (0.4, 0.2, 0.1, 0.05), (50, 25, 10, 5, 2)),
-    "rod_seal": ((2.5, 4.0, 8.0, 12.0), (0.08, 0.04, 0.02, 0.01, 0.005), (25, 10, 5, 2)),
+CASES = {  # of each scene: elements across, cycles in a jump, edges in the contact [mm], and along the edges
+    "shaft_on_plate": ((3.0, 6.0, 12.0, 24.0), (50, 25, 10, 5, 2), (0.4, 0.2, 0.1, 0.05), (0.4, 0.2, 0.1, 0.05)),
+    "rod_seal": ((2.5, 4.0, 8.0, 12.0), (25, 10, 5, 2), (0.08, 0.04, 0.02, 0.01, 0.005), (0.08, 0.04, 0.02, 0.01)),
 }
 ERRORS = ("along the run", "at the end")
 TURNS = 2  # of a level and the setting that it is compared with
@@ -112,10 +112,11 @@ def side_by_side(found, pair, name):
 def main(names):
     """Print each run, then what the levels save."""
     for name in names:
-        across, edges, jumps = CASES[name]
+        across, jumps, contact, along = CASES[name]
         exact = measure(__file__, "reference", 2 * max(across), 0, name)
         runs = [("adaptive", a, 0) for a in across]
-        runs += [(kind, edge, jump) for kind in ("contact", "edges") for edge in edges for jump in jumps]
+        kinds = (("contact", contact), ("edges", along))
+        runs += [(kind, edge, jump) for kind, edges in kinds for edge in edges for jump in jumps]
         found = {}
         for run in runs:
             result = measure(__file__, *run, name)
