@@ -12,8 +12,9 @@ and finer ones show the mesh, not the solution.
 
 The section that loses elements is in ``torn_seal``, which has the run on finer elements.
 
-One of 24 misses the band, on the safe side: the pin's contact area (3.8), whose coarser reading is too far off for the
-order that is taken.
+Two of 24 miss the band, on the safe side: the pin's contact area (3.8), whose coarser reading is too far off for the
+order that is taken, and the depth of the seal that remembers (3.1), whose three readings differ the more the finer they
+are, so that no order shows.
 
 These are not blind: the bounds of the order, what counts as scatter and which coarsest run is left out
 (``ngwear.seen_order``), the pin's order, the share of what is torn, and that no less of the depth's error is stated
