@@ -101,12 +101,10 @@ def cheapest(found, kind, error, most):
     return min(equal, key=lambda run: equal[run]["seconds"], default=None)
 
 
-def side_by_side(found, pair, name):
-    """Seconds of the second run of a pair over those of the first, the least of all their turns."""
+def take_turns(found, pair, name):
+    """Run both of a pair again by turns; the least seconds of each are kept."""
     for run in pair * TURNS:
         found[run]["seconds"] = min(found[run]["seconds"], measure(__file__, *run, name)["seconds"])
-    first, second = (found[run]["seconds"] for run in pair)
-    return second / first
 
 
 def main(names):
@@ -129,18 +127,21 @@ def main(names):
             sys.stdout.write(f"{name} {run}: {told}\n")
             sys.stdout.flush()
         for run in runs[: len(across)]:
-            for kind in ("contact", "edges"):
-                for error in ERRORS:
-                    most = found[run][error]
-                    best = cheapest(found, kind, error, most)
-                    told = "none is as accurate"
-                    if best is not None:
-                        ratio = side_by_side(found, (run, best), name)
-                        told = f"{ratio:.2f} with {best[1]:g} mm, {best[2]} cycles"
-                    says = f"{run[1]:g} across, {100 * most:.2f} % {error}: {kind} over it {told}"
-                    sys.stdout.write(f"{name}: {says}\n")
-                    sys.stdout.flush()
-            sys.stdout.write(f"{name}: {run[1]:g} across, {found[run]['seconds']:.2f} CPU s\n")
+            mine = found[run]
+            against = {
+                (kind, error): cheapest(found, kind, error, mine[error]) for kind, _ in kinds for error in ERRORS
+            }
+            for best in dict.fromkeys(against.values()):
+                if best is not None:
+                    take_turns(found, (run, best), name)
+            sys.stdout.write(f"{name}: {run[1]:g} across, {mine['seconds']:.2f} CPU s\n")
+            for (kind, error), best in against.items():
+                told = "none is as accurate"
+                if best is not None:
+                    told = f"{found[best]['seconds'] / mine['seconds']:.2f} with {best[1]:g} mm, {best[2]} cycles"
+                says = f"{run[1]:g} across, {100 * mine[error]:.2f} % {error}: {kind} over it {told}"
+                sys.stdout.write(f"{name}: {says}\n")
+            sys.stdout.flush()
 
 
 if __name__ == "__main__":
