@@ -15,6 +15,7 @@ from ngwear import __version__
 from ngwear.errors import NgwearError, ResultError, SceneError
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
+BESIDE = ("ngwear.companion", "ngwear.plots.wear", "h5py", "matplotlib.backends.backend_agg")  # a run's second process
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -104,7 +105,7 @@ def main(arguments: list[str] | None = None) -> int:
 def _run(options: argparse.Namespace) -> int:
     from ngwear.workers import Worker
 
-    worker = None if options.alone else Worker("ngwear.companion")  # loads while this process does
+    worker = None if options.alone else Worker(*BESIDE)  # loads while this process does
     from ngwear.files import COMPLETED
     from ngwear.scenefile import read_scene
     from ngwear.sliding.scene import PinScene

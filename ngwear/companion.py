@@ -161,10 +161,10 @@ def run_stated(
     """Run a scene and, beside it in a second process, its companions; ``summary["error estimates"]`` is from all.
 
     Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Where the first
-    companion shows an error of the greatest depth of no more than ``enough``, taken as of first order, the coarsest is
-    stopped; what it has taken until then is not told. Companions that give up lose nothing: without the coarsest,
-    errors are taken as of first order; without both, those of the mesh are not known. The summary then warns. They run
-    in ``worker``, which ends with them, or in one that begins here.
+    companion shows an error of the greatest depth of no more than ``enough``, taken as of first order, there is no
+    coarsest. Companions that give up lose nothing: without the coarsest, errors are taken as of first order; without
+    both, those of the mesh are not known. The summary then warns. They run in ``worker``, which ends with this, or in
+    one that begins here. It draws the figures, too, if it has nothing else to do by then.
     """
     companions = _Companions(scene, Path(out), enough, worker)
 
@@ -182,6 +182,7 @@ def run_stated(
             throw=throw,
             figures=figures,
             errors=state,
+            draw=companions.draw,
         )
 
 
@@ -196,14 +197,26 @@ class _Companions:
         self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
 
     def __enter__(self) -> _Companions:
-        if any(left_by(*run) is None for run in self.runs):
-            self.worker = self.worker or Worker(__name__)
-            self.worker.do(_leave, self.runs)
+        self._begin(self.runs if self.enough is None else self.runs[:1])
         return self
 
     def __exit__(self, *_: object) -> None:
         if self.worker is not None:
             self.worker.end()
+
+    def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
+        """Let those run that have not left anything."""
+        if any(left_by(*run) is None for run in runs):
+            self.worker = self.worker or Worker(__name__)
+            self.worker.do(_leave, runs)
+
+    def draw(self, folder: Path) -> None:
+        """Draw the figures of the run: in the worker, if it has nothing else to do."""
+        if self.worker is not None and self.worker.idle:
+            self.worker.do(_draw, folder)
+            if self.worker.did():
+                return
+        _draw(folder)  # or fail as it did
 
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Wait for them, and put the estimates into the summary of the run."""
@@ -216,6 +229,7 @@ class _Companions:
         known = stated(self.scene, embedded, mine, other["reading"])
         left = [(other, "companion")]
         if self.enough is None or known[DEPTH] > self.enough:
+            self._begin(self.runs[1:])
             coarsest = self._left(*self.runs[1])
             if "gave up" in coarsest:
                 why = f"the coarsest companion run gave up: {coarsest['gave up']}"
@@ -230,7 +244,7 @@ class _Companions:
 
     def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for what one of them leaves."""
-        while self.worker is not None and self.worker.alive and left_by(scene, file) is None:
+        while left_by(scene, file) is None and self.worker is not None and self.worker.alive and not self.worker.idle:
             time.sleep(POLL)
         return left_by(scene, file) or {"gave up": "it ended without a word"}
 
@@ -242,6 +256,12 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
     except (OSError, ValueError):
         return None
     return left if left.get("scene") == fingerprint(scene) else None
+
+
+def _draw(folder: Path) -> None:
+    from ngwear.plots.wear import plot
+
+    plot(folder)
 
 
 def _leave(runs: list[tuple[Scene, Path]]) -> None:

@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
 NARROWEST = 0.5  # of the patch: elements of the narrowest zones
-NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
+NEAR, NEARER = 1.0, 0.5  # patches: gaps that may close soon, and sooner
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 

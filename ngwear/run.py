@@ -54,6 +54,7 @@ def run(
     figures: bool = True,
     on_step: Callable[[State], None] | None = None,
     errors: Callable[[Recorder, dict[str, Any]], None] | None = None,
+    draw: Callable[[Path], None] | None = None,
 ) -> Result:
     """Run a scene to its end.
 
@@ -73,8 +74,10 @@ def run(
     on_step : callable or None
         Called with the state after mounting and after each accepted step.
     errors : callable or None
-        Called with records and summary of a run that reached its end, once all else is written: it may state more
+        Called with records and summary of a run that reached its end, once all data are written: it may state more
         errors there.
+    draw : callable or None
+        Draws the figures into the folder it is called with, instead of this process.
 
     Raises
     ------
@@ -115,22 +118,21 @@ def run(
     summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
-    waits = errors is not None and state is not None and error is None
     if folder is not None:
         folder.finish(recorder, summary)
         if scene.save.vtk and state is not None:
             _write_vtk(folder.path, state)
-        if figures and recorder.rows:
-            from ngwear.plots.wear import plot
-
-            plot(folder.path, bands=False if waits else None)
-    if waits:
-        errors(recorder, summary)
-        summary["wall time [s]"] = round(time.perf_counter() - wall, 3)
-        if folder is not None:
-            folder.finish(recorder, summary)
-            if figures:
-                plot(folder.path, bands=True)
+    try:
+        if errors is not None and state is not None and error is None:
+            errors(recorder, summary)
+            summary["wall time [s]"] = round(time.perf_counter() - wall, 3)
+            if folder is not None:
+                folder.finish(recorder, summary)
+    finally:  # who stops waiting for companions loses nothing
+        if folder is not None and figures and recorder.rows:
+            if draw is None:
+                from ngwear.plots.wear import plot as draw
+            draw(folder.path)
     if error is not None and throw:
         raise error
     return Result(status, message, summary, recorder, state, error)

@@ -11,6 +11,8 @@ from multiprocessing import Pipe, get_context, parent_process
 from multiprocessing.connection import Connection
 from typing import TYPE_CHECKING, Any
 
+from ngwear.errors import NgwearError
+
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
@@ -18,22 +20,46 @@ ONE_THREAD = ("NGS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS
 
 
 class Worker:
-    """A spawned process that loads a module and then waits for what it shall do, once.
+    """A spawned process that loads modules and then does what it is told, one thing after the other.
 
-    Begun before this process loads its own libraries, both load at the same time.
+    Begun before this process loads its own libraries, both load at the same time. A function that raises an error of
+    ngwear's own has failed; with any other error the process ends.
     """
 
-    def __init__(self, module: str) -> None:
+    def __init__(self, *modules: str) -> None:
         self._pipe, its = Pipe()
+        self._owing, self._failed = 0, False
         with one_thread():
-            self._process = get_context("spawn").Process(target=_work, args=(its, module), daemon=True)
+            self._process = get_context("spawn").Process(target=_work, args=(its, modules), daemon=True)
             self._process.start()
         its.close()
 
-    def do(self, function: Callable[..., None], *arguments: Any) -> None:
-        """Let it call a module's function, and end."""
-        with suppress(BrokenPipeError):  # it has ended: whoever waits for its work sees that
+    def do(self, function: Callable[..., object], *arguments: Any) -> None:
+        """Let it call a module's function once it has done what it was told before."""
+        self._owing += 1
+        with suppress(OSError):  # it has ended: whoever waits for its work sees that
             self._pipe.send((function, arguments))
+
+    @property
+    def idle(self) -> bool:
+        """Whether it is there and has done all that it was told."""
+        self._hear(0)
+        return self.alive and not self._owing
+
+    def did(self) -> bool:
+        """Wait until it has done all that it was told; whether the last of it has not failed."""
+        while self._owing and self._hear(None):
+            pass
+        return not (self._owing or self._failed)
+
+    def _hear(self, timeout: float | None) -> bool:
+        """Take in what it says; False if it has ended."""
+        with suppress(EOFError, OSError):
+            while self._owing and self._pipe.poll(timeout):
+                self._failed = self._pipe.recv()
+                self._owing -= 1
+            return True
+        return False
 
     @property
     def alive(self) -> bool:
@@ -48,12 +74,19 @@ class Worker:
         self._process.join()
 
 
-def _work(pipe: Connection, module: str) -> None:
+def _work(pipe: Connection, modules: tuple[str, ...]) -> None:
     end_with_parent()
-    import_module(module)
-    with suppress(EOFError):  # there is nothing to do
-        function, arguments = pipe.recv()
-        function(*arguments)
+    for module in modules:
+        import_module(module)
+    with suppress(EOFError):  # there is nothing more to do
+        while True:
+            function, arguments = pipe.recv()
+            try:
+                function(*arguments)
+                failed = False
+            except NgwearError:
+                failed = True
+            pipe.send(failed)
 
 
 @contextmanager

@@ -29,14 +29,8 @@ MARGIN = 0.1  # mm, around the part
 COMPANIONS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run with a companion states
 
 
-def plot(folder: Path | str, *, bands: bool | None = None) -> list[Path]:
+def plot(folder: Path | str) -> list[Path]:
     """Draw the figures of a run into its folder; return their paths.
-
-    Parameters
-    ----------
-    folder : Path or str
-    bands : bool or None
-        Only those with bands of the errors that the run states, or only those without; by default all.
 
     Raises
     ------
@@ -60,8 +54,6 @@ def plot(folder: Path | str, *, bands: bool | None = None) -> list[Path]:
         figures["stress_field"] = stress_figure
     if has_book(result):
         figures["material_book"] = book_figure
-    if bands is not None:
-        figures = {name: draw for name, draw in figures.items() if (draw is history_figure) == bands}
     written = []
     with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
         for name, draw in figures.items():

@@ -13,6 +13,7 @@ from ngwear.results import TORN, fingerprint
 from ngwear.run import run
 from ngwear.seen_order import relative_errors
 from ngwear.verify.no_loss import scene
+from ngwear.workers import Worker
 
 
 @pytest.fixture(scope="module")
@@ -185,8 +186,7 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     assert np.isfinite(summary["error estimates"]["maximum depth [-]"])
 
 
-def test_a_run_is_written_and_drawn_before_its_errors_are_known(tmp_path):
-    """Who stops waiting for companions has lost nothing; only the history is drawn once more is known."""
+def test_a_run_is_written_before_its_errors_are_known(tmp_path):
     found = {}
 
     def state(recorder, summary):
@@ -195,13 +195,35 @@ def test_a_run_is_written_and_drawn_before_its_errors_are_known(tmp_path):
         summary["error estimates"]["peak pressure [-]"] = 0.1
 
     run(scene("implicit"), out=tmp_path, errors=state)
-    assert {"result.h5", "series.csv", "profiles.png", "mesh.png"} <= found["files"]
-    assert "history.png" not in found["files"]
+    assert {"result.h5", "series.csv"} <= found["files"]
     assert found["before"]["status"] == "completed"
-    assert (tmp_path / "history.png").exists()
     after = json.loads((tmp_path / "summary.json").read_text())
     assert after["error estimates"] == found["before"]["error estimates"] | {"peak pressure [-]": 0.1}
     assert read_result(tmp_path).errors == after["error estimates"]
+
+
+def test_who_stops_waiting_for_errors_has_all_else(tmp_path):
+    def state(recorder, summary):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run(scene("implicit"), out=tmp_path, errors=state)
+    assert {"history.png", "profiles.png", "mesh.png"} <= {file.name for file in tmp_path.iterdir()}
+    assert json.loads((tmp_path / "summary.json").read_text())["status"] == "completed"
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_figures_are_drawn_by_the_worker_or_else_here(finished, tmp_path, monkeypatch, there):
+    drawn, folder = [], finished[0]
+    monkeypatch.setattr(companion, "_draw", drawn.append)  # what a worker appends, it appends to its own
+    worker = Worker("ngwear.companion")
+    if not there:
+        worker.end()
+    for name in (FILE, COARSEST):
+        shutil.copy(folder / name, tmp_path / name)
+    run_stated(scene("implicit"), out=tmp_path, worker=worker)
+    assert drawn == ([] if there else [tmp_path])
+    assert not worker.alive
 
 
 def test_pressures_are_drawn_in_the_band_of_their_error(finished):

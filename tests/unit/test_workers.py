@@ -5,6 +5,7 @@ import time
 
 import pytest
 
+from ngwear.errors import ResultError
 from ngwear.workers import ONE_THREAD, Worker
 
 
@@ -23,17 +24,37 @@ def worker():
     assert not begun.alive
 
 
-def test_a_worker_does_what_it_is_told_and_ends(worker, tmp_path):
+def refuse(path):
+    raise ResultError(str(path))
+
+
+def test_a_worker_does_what_it_is_told_one_after_the_other(worker, tmp_path):
     (tmp_path / "a").write_text("worn")
     worker.do(shutil.copy, tmp_path / "a", tmp_path / "b")
-    assert ended(worker)
-    assert (tmp_path / "b").read_text() == "worn"
+    worker.do(shutil.copy, tmp_path / "b", tmp_path / "c")
+    assert worker.did()
+    assert (tmp_path / "c").read_text() == "worn"
+    assert worker.idle
+
+
+def test_a_worker_is_not_idle_before_it_has_done_all(worker, tmp_path):
+    worker.do(time.sleep, 0.2)
+    assert not worker.idle
+    assert worker.did()
+    assert worker.idle
+
+
+def test_what_ngwear_refuses_has_failed_and_the_worker_goes_on(worker, tmp_path):
+    worker.do(refuse, tmp_path)
+    assert not worker.did()
+    worker.do(time.sleep, 0.0)
+    assert worker.did()
 
 
 def test_a_worker_has_one_thread_and_leaves_this_process_its_own(worker, tmp_path):
     worker.do(os.system, f"env > {tmp_path / 'env'}")
     before = {name: os.environ.get(name) for name in ONE_THREAD}
-    assert ended(worker)
+    assert worker.did()
     lines = (tmp_path / "env").read_text().splitlines()
     assert {f"{name}=1" for name in ONE_THREAD} <= set(lines)
     assert {name: os.environ.get(name) for name in ONE_THREAD} == before
@@ -48,3 +69,11 @@ def test_telling_a_worker_that_has_died_is_no_error(worker):
     os.kill(worker._process.pid, signal.SIGKILL)
     assert ended(worker)
     worker.do(print)
+    assert not worker.did()
+    assert not worker.idle
+
+
+def test_a_worker_that_dies_at_its_work_has_failed(worker):
+    worker.do(os.abort)
+    assert not worker.did()
+    assert not worker.idle
