@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -17,19 +18,26 @@ Array = NDArray[np.float64]
 
 FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
 NARROWEST = 0.5  # of the patch: elements of the narrowest zones
-NEAR, NEARER = 1.0, 0.5  # patches: gaps that may close soon, and sooner
+NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
+LEAST = 0.5  # of these: also where wear has not so much left to close
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 
 def wanted_size(
-    stage: Stage, phases: list[Array], *, across: float | None = None, reach: float = NEAR, sliding: float = 0.0
+    stage: Stage,
+    phases: list[Array],
+    *,
+    across: float | None = None,
+    reach: float = NEAR,
+    left: float = math.inf,
+    lasts: bool = False,
 ) -> SizeField:
     """Element sizes for the present states, one for each stroke of the cycle.
 
     In the contacts those of ``contact_sizes``; elsewhere what brings the indicator of an element to its share of
     ``Accuracy.stress_error``.
     """
-    contacts = contact_sizes(stage, phases, across=across, reach=reach, sliding=sliding)
+    contacts = contact_sizes(stage, phases, across=across, reach=reach, left=left, lasts=lasts)
     places, sizes = _stress_sizes(stage, phases)
     heard = sizes < FINER * contacts(places)
     return replace(
@@ -39,27 +47,35 @@ def wanted_size(
     )
 
 
-def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0) -> bool:
+def outgrown(stage: Stage, phases: list[Array], *, left: float = math.inf, lasts: bool = False) -> bool:
     """Whether a followed contact, or a stress, has reached elements that are much too coarse for it.
 
-    A gap must be below ``NEARER`` patches for that, so that no mesh is outgrown as soon as it is made. With
-    ``sliding``, whether a contact may do so within that distance [mm].
+    Gaps count up to half as wide as those that ``contact_sizes`` makes a mesh for, so that no mesh is outgrown as soon
+    as it is made.
     """
-    wanted, body = wanted_size(stage, phases, reach=NEARER, sliding=sliding), stage.body
+    wanted, body = wanted_size(stage, phases, reach=NEARER, left=left, lasts=lasts), stage.body
     slack = np.where(wanted.sizes > stage.scene.accuracy.patch, STRESS_SLACK, CONTACT_SLACK)
     return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
 
 
 def contact_sizes(
-    stage: Stage, phases: list[Array], *, across: float | None = None, reach: float = NEAR, sliding: float = 0.0
+    stage: Stage,
+    phases: list[Array],
+    *,
+    across: float | None = None,
+    reach: float = NEAR,
+    left: float = math.inf,
+    lasts: bool = False,
 ) -> SizeField:
     """Element sizes for the contacts alone.
 
-    The patch's where a followed contact carries load, its gap is below ``reach`` patches, or wear over a distance of
-    ``sliding`` [mm] may close it. With ``across``, zones that are narrower than others have smaller ones, so many
-    across each, down to ``NARROWEST`` of the scene's, which is that of the mean zone.
+    The patch's where a followed contact carries load, or its gap is below ``reach`` patches: less, down to half, where
+    all the sliding that is ``left`` [mm] wears no ``NEAR`` patches. With ``lasts`` also where that may close the gap:
+    the mesh is to do for the rest of the program. With ``across``, zones that are narrower than others have smaller
+    ones, so many across each, down to ``NARROWEST`` of the scene's, which is that of the mean zone.
 
-    A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate.
+    A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate, and
+    what is worn brings the surfaces nearer by no more.
     """
     accuracy, contour = stage.scene.accuracy, stage.body.contour
     size = np.full(len(contour), np.inf)
@@ -72,9 +88,11 @@ def contact_sizes(
             profile = contact.profile()
             pressure = profile.nominal_pressure
             wearing = pressure * contact.wear_factor(profile.pressure)
-            deepest = spec.wear_rate.highest * sliding * wearing.max(initial=0.0)
+            rate = spec.wear_rate.highest * wearing.max(initial=0.0)
+            deepest = rate * left if rate > 0 else 0.0
+            soon = reach * min(accuracy.patch, max(LEAST * accuracy.patch, deepest / NEAR))
             patch = element_edges(profile, accuracy.patch, across)
-            near = (pressure > 0) | (profile.gap < reach * accuracy.patch + deepest)
+            near = (pressure > 0) | (profile.gap < soon + (deepest if lasts else 0.0))
             ask = _spanned(contour, profile, near)
             size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
     vector[:] = keep

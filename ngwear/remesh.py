@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,13 +37,13 @@ def is_due(state: State) -> bool:
     moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
     if moved > FARTHEST * accuracy.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
         return True
-    return outgrown(state.stage, [p.vector for p in state.phases])
+    return outgrown(state.stage, [p.vector for p in state.phases], **still_ahead(state))
 
 
-def still_to_slide(state: State) -> float:
-    """Sliding distance for which a mesh made now shall do [mm]: all that is left, unless new ones come when due."""
+def still_ahead(state: State) -> dict[str, Any]:
+    """The sliding distance that is left [mm], and whether a mesh made now shall do for all of it."""
     scene, program = state.stage.scene, state.stage.scene.program
-    return 0.0 if scene.wear.remesh == "due" else program.slid(program.strokes) - program.slid(state.strokes)
+    return {"left": program.slid(program.strokes) - program.slid(state.strokes), "lasts": scene.wear.remesh != "due"}
 
 
 def remesh(state: State, contour: Contour | None = None) -> None:
@@ -57,7 +58,7 @@ def remesh(state: State, contour: Contour | None = None) -> None:
         old.scene = chosen(old, phases, state.across)
         if state.ledger.worn == 0:
             contour = unworn_outline(old.scene)
-    wanted = wanted_size(old, phases, across=state.across, sliding=still_to_slide(state))
+    wanted = wanted_size(old, phases, across=state.across, **still_ahead(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0

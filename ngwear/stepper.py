@@ -22,7 +22,7 @@ from ngwear.geometry.body import Body
 from ngwear.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.program import Stroke
 from ngwear.refinement import outgrown, wanted_size
-from ngwear.remesh import is_due, remesh, still_to_slide
+from ngwear.remesh import is_due, remesh, still_ahead
 from ngwear.scene import Scene
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
@@ -108,14 +108,14 @@ class Stepper:
 
     def _refine(self, state: State) -> None:
         """Mesh anew until the mesh is fine where the strokes of the cycle want it."""
-        ahead = still_to_slide(state)
+        ahead = still_ahead(state)
         while state.ledger.remeshes < 4:
             vectors, laid = [phase.vector for phase in state.phases], state.stage.scene
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting's mesh may be too fine, too
             if state.across is not None:
                 state.stage.scene = chosen(state.stage, vectors, state.across)
             narrow = state.stage.scene.accuracy.patch < NARROWER * laid.accuracy.patch
-            if not (first or narrow or outgrown(state.stage, vectors, sliding=ahead)):
+            if not (first or narrow or outgrown(state.stage, vectors, **ahead)):
                 state.stage.scene = laid
                 break
             remesh(state)
