@@ -5,7 +5,7 @@ import pytest
 
 from ngwear.accuracy import Accuracy
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.refinement import NARROWEST, contact_sizes, element_edges, outgrown, wanted_size
+from ngwear.refinement import LEAST, NARROWEST, NEAR, contact_sizes, element_edges, outgrown, wanted_size
 from ngwear.stepper import Stepper
 
 
@@ -100,3 +100,31 @@ def test_a_tolerance_of_one_asks_for_nothing(started):
     state = started(stress_error=1.0)
     stage, phases = state.stage, [p.vector for p in state.phases]
     assert wanted_size(stage, phases).seeds == pytest.approx(contact_sizes(stage, phases).seeds)
+
+
+def test_gaps_count_as_far_as_wear_may_still_close_them(started):
+    """From a patch where nothing more wears, to two; and as far as all that wears where the mesh is to last."""
+    state = started(stress_error=1.0)
+    stage, phases = state.stage, [state.stage.problem.state.vec.FV().NumPy().copy()]
+    (spec,) = stage.scene.followed
+    profile, patch = stage.contacts[spec.name].profile(), stage.scene.accuracy.patch
+    most = (profile.nominal_pressure * stage.contacts[spec.name].wear_factor(profile.pressure)).max()
+    way = NEAR * patch / (spec.wear_rate.highest * most)  # that wears two patches
+
+    corners = np.rint(profile.t).astype(int) == profile.t
+    points, gaps = profile.reference[corners].round(9), profile.gap[corners]
+
+    def widest(**how):
+        asked = {tuple(seed) for seed in contact_sizes(stage, phases, **how).seeds.round(9)}
+        return max(gap for point, gap in zip(points, gaps, strict=True) if tuple(point) in asked)
+
+    for how, bound in (
+        ({"left": 0.0}, LEAST * NEAR * patch),
+        ({"left": 0.75 * way}, 0.75 * NEAR * patch),
+        ({"left": way}, NEAR * patch),
+        ({}, NEAR * patch),
+        ({"left": way, "lasts": True}, 2 * NEAR * patch),
+    ):
+        found = widest(**how)  # a node between two points of the outline asks for one of them
+        assert gaps[gaps < bound].max() <= found <= gaps[gaps >= bound].min(), how
+    assert widest(left=0.0) < widest(left=0.75 * way) < widest() < widest(left=way, lasts=True)
