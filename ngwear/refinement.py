@@ -29,15 +29,15 @@ def wanted_size(
     *,
     across: float | None = None,
     reach: float = NEAR,
+    sliding: float = 0.0,
     left: float = math.inf,
-    lasts: bool = False,
 ) -> SizeField:
     """Element sizes for the present states, one for each stroke of the cycle.
 
     In the contacts those of ``contact_sizes``; elsewhere what brings the indicator of an element to its share of
     ``Accuracy.stress_error``.
     """
-    contacts = contact_sizes(stage, phases, across=across, reach=reach, left=left, lasts=lasts)
+    contacts = contact_sizes(stage, phases, across=across, reach=reach, sliding=sliding, left=left)
     places, sizes = _stress_sizes(stage, phases)
     heard = sizes < FINER * contacts(places)
     return replace(
@@ -47,13 +47,13 @@ def wanted_size(
     )
 
 
-def outgrown(stage: Stage, phases: list[Array], *, left: float = math.inf, lasts: bool = False) -> bool:
+def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0, left: float = math.inf) -> bool:
     """Whether a followed contact, or a stress, has reached elements that are much too coarse for it.
 
     Gaps count up to half as wide as those that ``contact_sizes`` makes a mesh for, so that no mesh is outgrown as soon
     as it is made.
     """
-    wanted, body = wanted_size(stage, phases, reach=NEARER, left=left, lasts=lasts), stage.body
+    wanted, body = wanted_size(stage, phases, reach=NEARER, sliding=sliding, left=left), stage.body
     slack = np.where(wanted.sizes > stage.scene.accuracy.patch, STRESS_SLACK, CONTACT_SLACK)
     return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
 
@@ -64,15 +64,15 @@ def contact_sizes(
     *,
     across: float | None = None,
     reach: float = NEAR,
+    sliding: float = 0.0,
     left: float = math.inf,
-    lasts: bool = False,
 ) -> SizeField:
     """Element sizes for the contacts alone.
 
-    The patch's where a followed contact carries load, or its gap is below ``reach`` patches: less, down to half, where
-    all the sliding that is ``left`` [mm] wears no ``NEAR`` patches. With ``lasts`` also where that may close the gap:
-    the mesh is to do for the rest of the program. With ``across``, zones that are narrower than others have smaller
-    ones, so many across each, down to ``NARROWEST`` of the scene's, which is that of the mean zone.
+    The patch's where a followed contact carries load, its gap is below ``reach`` patches, or wear over a distance of
+    ``sliding`` [mm] may close it. Fewer patches, down to half, where all the distance that is ``left`` [mm] wears no
+    ``NEAR`` patches. With ``across``, zones that are narrower than others have smaller ones, so many across each, down
+    to ``NARROWEST`` of the scene's, which is that of the mean zone.
 
     A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate, and
     what is worn brings the surfaces nearer by no more.
@@ -90,9 +90,9 @@ def contact_sizes(
             wearing = pressure * contact.wear_factor(profile.pressure)
             rate = spec.wear_rate.highest * wearing.max(initial=0.0)
             deepest = rate * left if rate > 0 else 0.0
-            soon = reach * min(accuracy.patch, max(LEAST * accuracy.patch, deepest / NEAR))
+            soon = reach * min(accuracy.patch, max(LEAST * accuracy.patch, deepest / NEAR)) + rate * sliding
             patch = element_edges(profile, accuracy.patch, across)
-            near = (pressure > 0) | (profile.gap < soon + (deepest if lasts else 0.0))
+            near = (pressure > 0) | (profile.gap < soon)
             ask = _spanned(contour, profile, near)
             size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
     vector[:] = keep

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,10 +39,17 @@ def is_due(state: State) -> bool:
     return outgrown(state.stage, [p.vector for p in state.phases], **still_ahead(state))
 
 
-def still_ahead(state: State) -> dict[str, Any]:
-    """The sliding distance that is left [mm], and whether a mesh made now shall do for all of it."""
+def still_ahead(state: State) -> dict[str, float]:
+    """How far the surfaces still slide [mm], for ``refinement.contact_sizes``.
+
+    With elements across, and new meshes when due, that tells which gaps may close before the next one; lengths that the
+    scene gives stand, however little is left. Where no other mesh comes, this one shall do for all of it.
+    """
     scene, program = state.stage.scene, state.stage.scene.program
-    return {"left": program.slid(program.strokes) - program.slid(state.strokes), "lasts": scene.wear.remesh != "due"}
+    left = program.slid(program.strokes) - program.slid(state.strokes)
+    if scene.wear.remesh != "due":
+        return {"sliding": left}
+    return {} if state.across is None else {"left": left}
 
 
 def remesh(state: State, contour: Contour | None = None) -> None:

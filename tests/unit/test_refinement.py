@@ -123,8 +123,8 @@ def test_gaps_count_as_far_as_wear_may_still_close_them(started):
         ({"left": 0.75 * way}, 0.75 * NEAR * patch),
         ({"left": way}, NEAR * patch),
         ({}, NEAR * patch),
-        ({"left": way, "lasts": True}, 2 * NEAR * patch),
+        ({"sliding": way}, 2 * NEAR * patch),
     ):
         found = widest(**how)  # a node between two points of the outline asks for one of them
         assert gaps[gaps < bound].max() <= found <= gaps[gaps >= bound].min(), how
-    assert widest(left=0.0) < widest(left=0.75 * way) < widest() < widest(left=way, lasts=True)
+    assert widest(left=0.0) < widest(left=0.75 * way) < widest() < widest(sliding=way)
