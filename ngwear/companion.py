@@ -38,8 +38,9 @@ import numpy as np
 
 from ngwear.accuracy import LEAST_ACROSS
 from ngwear.errors import NgwearError
+from ngwear.result_file import Snapshot
 from ngwear.results import TORN, Recorder, fingerprint
-from ngwear.run import Result
+from ngwear.run import DrawnHere, Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
 from ngwear.seen_order import Reading, relative_errors
@@ -56,6 +57,7 @@ WHOLE = {
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "friction force")}
+HERE = DrawnHere()
 PLACES = 17  # of the last half of the run, at which histories are read
 
 
@@ -182,19 +184,20 @@ def run_stated(
             throw=throw,
             figures=figures,
             errors=state,
-            draw=companions.draw,
+            draw=companions,
         )
 
 
 class _Companions:
     """Runs in a process of their own, the finer first, each of which leaves its readings in a file.
 
-    Those of an earlier process are taken from there.
+    Those of an earlier process are taken from there. The process draws as well (``ngwear.run.Drawing``).
     """
 
     def __init__(self, scene: Scene, folder: Path, enough: float | None, worker: Worker | None) -> None:
         self.scene, self.enough, self.worker = scene, enough, worker
         self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
+        self.begun: list[tuple[Scene, Path]] = []
 
     def __enter__(self) -> _Companions:
         self._begin(self.runs if self.enough is None else self.runs[:1])
@@ -209,14 +212,20 @@ class _Companions:
         if any(left_by(*run) is None for run in runs):
             self.worker = self.worker or Worker(__name__)
             self.worker.do(_leave, runs)
+            self.begun += runs
 
-    def draw(self, folder: Path) -> None:
-        """Draw the figures of the run: in the worker, if it has nothing else to do."""
-        if self.worker is not None and self.worker.idle:
-            self.worker.do(_draw, folder)
+    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
+        """Have the mesh drawn by the worker once it has run what it was told to; without one, with the rest."""
+        if self.worker is not None:
+            self.worker.do(HERE.mesh, folder, scene, first)
+
+    def rest(self, folder: Path) -> None:
+        """Draw the figures of the run: in the worker, if it is through with the runs."""
+        if self.worker is not None and self.worker.alive and all(left_by(*run) is not None for run in self.begun):
+            self.worker.do(HERE.rest, folder)
             if self.worker.did():
                 return
-        _draw(folder)  # or fail as it did
+        HERE.rest(folder)  # or fail as it did
 
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Wait for them, and put the estimates into the summary of the run."""
@@ -256,12 +265,6 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
     except (OSError, ValueError):
         return None
     return left if left.get("scene") == fingerprint(scene) else None
-
-
-def _draw(folder: Path) -> None:
-    from ngwear.plots.wear import plot
-
-    plot(folder)
 
 
 def _leave(runs: list[tuple[Scene, Path]]) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -18,17 +18,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Outline and contact profiles at one solved stroke, as read from ``result.h5``.
+    """Outline and contact profiles at one solved stroke, as a run keeps them and as read from ``result.h5``.
 
-    ``time`` [s] is infinite where a stroke has no speed; ``elements`` is empty but at the strokes that keep them.
+    ``time`` [s] is infinite where a stroke has no speed, and not yet known to the run; ``mesh`` is empty but at the
+    first stroke, ``elements`` but at the strokes that keep them.
     """
 
     stroke: int
     kind: str
     outline: Array
     profiles: dict[str, dict[str, Array]]
-    mesh: dict[str, Array]
-    elements: dict[str, Array]
+    mesh: dict[str, Array] = field(default_factory=dict)
+    elements: dict[str, Array] = field(default_factory=dict)
     time: float = math.inf
 
 

@@ -18,6 +18,7 @@ from ngwear.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, pu
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.contour import Contour
 from ngwear.geometry.sizing import divided
+from ngwear.result_file import Snapshot
 from ngwear.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
 
@@ -54,18 +55,6 @@ def measured_at(scene: Scene) -> Contour:
 
 
 @dataclass
-class Snapshot:
-    """Outline and pressures kept at one solved stroke."""
-
-    stroke: int
-    kind: str
-    outline: Array
-    profiles: dict[str, dict[str, Array]]
-    mesh: dict[str, Array] | None = None
-    elements: dict[str, Array] | None = None
-
-
-@dataclass
 class Recorder:
     """Rows and snapshots of a run so far; plain data that a checkpoint carries along.
 
@@ -88,7 +77,7 @@ class Recorder:
             self.unworn_area = self.unworn.area
         for number, report in enumerate(state.reports):
             self.rows.append(self._row(state, report, wall))
-            mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else None
+            mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else {}
             self.snapshots.append(self._snapshot(report, mesh))
 
     def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
@@ -152,7 +141,7 @@ class Recorder:
         out["elements worn away [-]"] = int(counts[Fate.WORN])
         return out
 
-    def _snapshot(self, report: Any, mesh: dict[str, Array] | None) -> Snapshot:
+    def _snapshot(self, report: Any, mesh: dict[str, Array]) -> Snapshot:
         profiles = {
             name: {
                 "reference [mm]": p.reference,
@@ -167,7 +156,7 @@ class Recorder:
             profiles[name]["counter-surface coordinate [mm]"] = counter.along
             profiles[name]["counter-surface depth [mm]"] = counter.depth
         kind = self.scene.program.cycle[report.phase].name
-        last, elements = report.last_stroke, None
+        last, elements = report.last_stroke, {}
         if report.cells is not None and last in (0, *self.scene.save.strokes, self.scene.program.strokes):
             cells = report.cells
             elements = {"points [mm]": cells.points, "corners": cells.corners, "fate": cells.fate} | report.loaded
@@ -332,5 +321,5 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
                 for name, values in profile.items():
                     group[f"{contact}/{name}"] = values
             for part, content in (("mesh", snapshot.mesh), ("elements", snapshot.elements)):
-                for name, values in (content or {}).items():
+                for name, values in content.items():
                     group[f"{part}/{name}"] = values

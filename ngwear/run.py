@@ -6,10 +6,11 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files import COMPLETED, GAVE_UP
+from ngwear.result_file import Snapshot
 from ngwear.results import Folder, Recorder
 from ngwear.scene import Scene
 from ngwear.state import State
@@ -44,6 +45,32 @@ class Result:
     error: Exception | None = None
 
 
+class Drawing(Protocol):
+    """What draws the figures of a run."""
+
+    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
+        """Draw the mesh, or have it drawn meanwhile."""
+
+    def rest(self, folder: Path) -> None:
+        """Draw all that is not there; it is when this returns."""
+
+
+class DrawnHere:
+    """What draws the figures of a run in this process."""
+
+    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
+        """Draw the mesh."""
+        from ngwear.plots.wear import plot_mesh
+
+        plot_mesh(folder, scene, first)
+
+    def rest(self, folder: Path) -> None:
+        """Draw all that is not there."""
+        from ngwear.plots.wear import plot
+
+        plot(folder, again=False)
+
+
 def run(
     scene: Scene,
     *,
@@ -54,7 +81,7 @@ def run(
     figures: bool = True,
     on_step: Callable[[State], None] | None = None,
     errors: Callable[[Recorder, dict[str, Any]], None] | None = None,
-    draw: Callable[[Path], None] | None = None,
+    draw: Drawing | None = None,
 ) -> Result:
     """Run a scene to its end.
 
@@ -70,14 +97,14 @@ def run(
     throw : bool
         Raise when the run gives up; else return a result that says why. What it had is saved either way.
     figures : bool
-        Draw the figures into the folder at the end.
+        Draw into the folder: the mesh once the part is mounted, all other figures at the end.
     on_step : callable or None
         Called with the state after mounting and after each accepted step.
     errors : callable or None
         Called with records and summary of a run that reached its end, once all data are written: it may state more
         errors there.
-    draw : callable or None
-        Draws the figures into the folder it is called with, instead of this process.
+    draw : Drawing or None
+        Draws instead of this process.
 
     Raises
     ------
@@ -86,7 +113,7 @@ def run(
     ConvergenceError, GeometryError, MeshError
         When the run gives up and ``throw`` is True.
     """
-    on_step = on_step or (lambda state: None)
+    on_step, draw = on_step or (lambda state: None), draw or DrawnHere()
     folder = None if out is None else Folder(Path(out), scene, resume=resume)
     saved = folder.load() if folder is not None and resume else None
     wall, cpu = time.perf_counter(), time.process_time()
@@ -99,6 +126,8 @@ def run(
             if state is None:
                 state = stepper.start()
                 _keep(folder, state, recorder, wall, cpu)
+                if folder is not None and figures:
+                    draw.mesh(folder.path, scene.name, recorder.snapshots[0])
                 on_step(state)
             bar.begin(state)
             while not stepper.finished(state):
@@ -130,9 +159,7 @@ def run(
                 folder.finish(recorder, summary)
     finally:  # who stops waiting for companions loses nothing
         if folder is not None and figures and recorder.rows:
-            if draw is None:
-                from ngwear.plots.wear import plot as draw
-            draw(folder.path)
+            draw.rest(folder.path)
     if error is not None and throw:
         raise error
     return Result(status, message, summary, recorder, state, error)

@@ -35,7 +35,7 @@ class Worker:
         its.close()
 
     def do(self, function: Callable[..., object], *arguments: Any) -> None:
-        """Let it call a module's function once it has done what it was told before."""
+        """Let it call a function of a module, or of its objects, once it has done what it was told before."""
         self._owing += 1
         with suppress(OSError):  # it has ended: whoever waits for its work sees that
             self._pipe.send((function, arguments))

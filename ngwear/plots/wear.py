@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -25,24 +26,31 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
+MESH = "mesh.png"
 MARGIN = 0.1  # mm, around the part
 COMPANIONS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run with a companion states
 
 
-def plot(folder: Path | str) -> list[Path]:
+def plot(folder: Path | str, *, again: bool = True) -> list[Path]:
     """Draw the figures of a run into its folder; return their paths.
+
+    Parameters
+    ----------
+    folder : path
+    again : bool
+        Draw the mesh, too, if its picture is there.
 
     Raises
     ------
     ResultError
         If the result cannot be read or the pictures cannot be written.
     """
-    import matplotlib
-
     result = read_result(folder)
     if not result.snapshots:
         return []
-    figures = {"mesh": mesh_figure, "profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
+    figures = {"profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
+    if again or not (Path(folder) / MESH).is_file():
+        figures["mesh"] = mesh_figure
     if has_laws(result):
         figures["laws"] = law_figure
     if worn_counters(result):
@@ -55,7 +63,7 @@ def plot(folder: Path | str) -> list[Path]:
     if has_book(result):
         figures["material_book"] = book_figure
     written = []
-    with matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3}):
+    with _style():
         for name, draw in figures.items():
             try:
                 figure = draw(result)
@@ -65,6 +73,31 @@ def plot(folder: Path | str) -> list[Path]:
             write(figure, path)
             written.append(path)
     return written
+
+
+def plot_mesh(folder: Path, scene: str, first: Snapshot) -> None:
+    """Draw the mesh alone, of a run that is under way.
+
+    Parameters
+    ----------
+    folder : Path
+    scene : str
+        Name.
+    first : Snapshot
+
+    Raises
+    ------
+    ResultError
+        If the picture cannot be written.
+    """
+    with _style():
+        write(_mesh(scene, first), folder / MESH)
+
+
+def _style() -> AbstractContextManager[None]:
+    import matplotlib
+
+    return matplotlib.rc_context({"font.size": 10, "axes.grid": True, "grid.alpha": 0.3})
 
 
 def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
@@ -78,10 +111,13 @@ def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
 
 def mesh_figure(result: ResultFile) -> Figure:
     """Deformed mesh at the first stroke of the cycle, over its contact pressure."""
+    return _mesh(result.scene, result.snapshots[0])
+
+
+def _mesh(scene: str, first: Snapshot) -> Figure:
     from matplotlib.collections import PolyCollection
 
-    first = result.snapshots[0]
-    points = first.mesh.get("points [mm]", result.outline)
+    points = first.mesh.get("points [mm]", first.outline)
     wide, high = np.ptp(points, axis=0) + 2 * MARGIN
     upper_share = 4 * min(max(high / wide, 0.2), 1.1)
     figure, (upper, lower) = new_figure(2, (upper_share, 1), size=(8, 2.0 * (upper_share + 1) + 0.5))
@@ -93,7 +129,7 @@ def mesh_figure(result: ResultFile) -> Figure:
     draw_planes(upper, first, 0.12)
     show(upper, box(points, MARGIN))
     upper.set_ylabel("y [mm]")
-    upper.set_title(f"{result.scene}: first {first.kind} stroke")
+    upper.set_title(f"{scene}: first {first.kind} stroke")
     _pressure(lower, first, color=COLOURS[1], lw=1.2)
     lower.set_ylabel("contact pressure [MPa]")
     lower.set_xlabel("x [mm]")

@@ -21,7 +21,7 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import SceneError
 from ngwear.geometry.contour import Contour
-from ngwear.results import Snapshot
+from ngwear.result_file import Snapshot
 from ngwear.run import Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene

@@ -8,6 +8,7 @@ import pytest
 from ngwear import companion
 from ngwear.companion import COARSEST, DEPTH, FILE, LOST, PEAK, PLACES, coarser, reading, run_stated, stated
 from ngwear.materials import PronySeries
+from ngwear.plots import wear
 from ngwear.result_file import read_result
 from ngwear.results import TORN, fingerprint
 from ngwear.run import run
@@ -215,15 +216,34 @@ def test_who_stops_waiting_for_errors_has_all_else(tmp_path):
 @pytest.mark.parametrize("there", [True, False])
 def test_figures_are_drawn_by_the_worker_or_else_here(finished, tmp_path, monkeypatch, there):
     drawn, folder = [], finished[0]
-    monkeypatch.setattr(companion, "_draw", drawn.append)  # what a worker appends, it appends to its own
+    plot = wear.plot
+    monkeypatch.setattr(wear, "plot", lambda *a, **how: drawn.append(plot(*a, **how)))  # a worker has its own
     worker = Worker("ngwear.companion")
     if not there:
         worker.end()
     for name in (FILE, COARSEST):
         shutil.copy(folder / name, tmp_path / name)
     run_stated(scene("implicit"), out=tmp_path, worker=worker)
-    assert drawn == ([] if there else [tmp_path])
+    pictures = {tmp_path / f"{name}.png" for name in ("mesh", "profiles", "peak_pressure", "history")}
+    assert there == (not drawn)
+    assert there or pictures <= set(*drawn)
+    assert all(picture.is_file() for picture in pictures)
     assert not worker.alive
+
+
+def test_mesh_is_drawn_once_the_part_is_mounted_and_then_stays(tmp_path):
+    begun = []
+
+    def mounted(state):
+        begun.append({file.name for file in tmp_path.glob("*.png")})
+        (tmp_path / "mesh.png").write_bytes(b"as it is")
+
+    run(scene("implicit"), out=tmp_path, on_step=mounted)
+    assert begun[0] == {"mesh.png"}
+    assert {file.name for file in tmp_path.glob("*.png")} >= {"mesh.png", "history.png"}
+    assert (tmp_path / "mesh.png").read_bytes() == b"as it is"
+    wear.plot(tmp_path)
+    assert (tmp_path / "mesh.png").stat().st_size > 1000
 
 
 def test_pressures_are_drawn_in_the_band_of_their_error(finished):
