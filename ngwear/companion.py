@@ -39,7 +39,7 @@ import numpy as np
 from ngwear.accuracy import LEAST_ACROSS
 from ngwear.errors import NgwearError
 from ngwear.result_file import Snapshot
-from ngwear.results import TORN, Recorder, fingerprint
+from ngwear.results import LEAK, TORN, Recorder, fingerprint
 from ngwear.run import DrawnHere, Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
@@ -57,6 +57,7 @@ WHOLE = {
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "friction force")}
+LEAKS = "leak pressure [-]"  # of scenes with a fluid
 HERE = DrawnHere()
 PLACES = 17  # of the last half of the run, at which histories are read
 
@@ -106,6 +107,8 @@ def reading(rows: list[dict[str, Any]]) -> dict[str, dict[str, list[float]]]:
         for words, error in STROKE.items():
             columns = [c for c in mine[-1] if f" {words} " in c and not c.endswith("[-]")]
             out.setdefault(error, {}).update({f"{kind}: {c}": history(c, mine) for c in columns})
+        if LEAK in mine[-1]:
+            out.setdefault(LEAKS, {})[kind] = history(LEAK, mine)
     return out
 
 

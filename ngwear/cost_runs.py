@@ -18,7 +18,7 @@ from ngwear.files import COMPLETED, GAVE_UP, peak_memory
 from ngwear.scene import Scene
 from ngwear.sliding.scene import PinScene
 
-DEPTH, PEAK = "maximum depth [mm]", "peak pressure [MPa]"
+DEPTH, PEAK, LEAK = "maximum depth [mm]", "peak pressure [MPa]", "leak pressure [MPa]"
 
 
 class OutOfTimeError(Exception):
@@ -137,8 +137,7 @@ def wear_values(scene: Scene, summary: dict[str, Any], rows: list[dict[str, Any]
     last = rows[-len(scene.program.cycle) :]
     amount = "worn volume [mm^3]" if scene.axisymmetric else "worn area [mm^2]"
     found = {name: float(summary[name]) for name in (DEPTH, amount) if scene.worn_edges}
-    if PEAK in summary:
-        found[PEAK] = float(summary[PEAK])
+    found |= {name: float(summary[name]) for name in (PEAK, LEAK) if name in summary}
     for spec in scene.contacts:
         width, force = f"{spec.name} contact width [mm]", f"{spec.name} friction force x ["
         if not (spec.wears or (spec.slides and spec.friction_law is not None)):

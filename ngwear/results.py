@@ -35,6 +35,7 @@ def fingerprint(scene: Scene) -> str:
 
 POINTS_ALONG = 200  # on a straight worn edge as long as the section: where depth is measured
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
+LEAK = "leak pressure [MPa]"
 TORN = "area lost in all by tearing [-]"  # what of its error is known separately
 BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
 
@@ -118,6 +119,8 @@ class Recorder:
         row |= {f"{name} margin of steady sliding [-]": margin for name, margin in report.margins.items()}
         row |= {f"{name} friction coefficient [-]": mu for name, mu in report.coefficients.items()}
         row |= {f"{name} specific wear rate [mm^2/N]": rate for name, rate in report.wear_rates.items()}
+        if report.leak_pressure is not None:
+            row[LEAK], row["leaks first at [-]"] = report.leak_pressure
         row |= {
             "leaks [-]": int(report.leaks),
             "Newton iterations [-]": report.iterations,
@@ -186,13 +189,18 @@ class Recorder:
             out |= {f"area lost by {name} [mm^2]": ledger.lost[fate] for fate, name in BOOK.items()}
             out["area lost in all [mm^2]"] = self.unworn_area - state.cells.area
         peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
+        leaks = [LEAK] if self.rows and LEAK in self.rows[-1] else []
         for kind in cycle:
             rows = [r for r in self.rows if r["kind [-]"] == kind]
-            for column in peaks:
+            for column in peaks + leaks:
                 out[f"first {kind} {column}"] = rows[0][column]
                 out[f"last {kind} {column}"] = rows[-1][column]
         if peaks:
             out["peak pressure [MPa]"] = max(r[c] for r in self.rows[-len(cycle) :] for c in peaks)
+        if leaks:
+            under = max(scene.program.cycle, key=lambda stroke: stroke.pressure).name
+            last = [row for row in self.rows if row["kind [-]"] == under][-1]
+            out |= {LEAK: last[LEAK], "leaks first at": last["leaks first at [-]"]}
         worst = max(ledger.worn, 1e-300)
         out["warnings"] = self._warnings()
         out |= {
@@ -231,6 +239,15 @@ class Recorder:
                 found.append(
                     f"contact '{spec.name}': friction and pressure are so high that steady sliding is unstable "
                     f"({column} {least:.2g}): waves would run along the surface; what is given is the steady state"
+                )
+        for stroke in self.scene.program.cycle:
+            rows = [row for row in self.rows if row["kind [-]"] == stroke.name and LEAK in row]
+            least = min(rows, key=lambda row: row[LEAK], default=None)
+            if least is not None and least[LEAK] < stroke.pressure:
+                found.append(
+                    f"stroke '{stroke.name}': the seal would leak at '{least['leaks first at [-]']}', whose contact "
+                    f"holds {least[LEAK]:.3g} MPa of the fluid's {stroke.pressure:.3g} MPa at stroke "
+                    f"{least['stroke [-]']}; what is given is the seal as if it held"
                 )
         return found
 

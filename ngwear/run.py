@@ -126,7 +126,7 @@ def run(
             if state is None:
                 state = stepper.start()
                 _keep(folder, state, recorder, wall, cpu)
-                if folder is not None and figures:
+                if folder is not None and figures and recorder.snapshots:
                     draw.mesh(folder.path, scene.name, recorder.snapshots[0])
                 on_step(state)
             bar.begin(state)

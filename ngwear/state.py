@@ -198,6 +198,8 @@ class StrokeReport:
         Worn profiles of the surfaces that keep one, after the stroke's wear.
     leaks : bool
         Whether the fluid meets no contact.
+    leak_pressure : tuple of float and str, or None
+        Fluid pressure that the contacts hold [MPa], and the edge that would give way first; None without a fluid.
     contour : Contour
         Outline after the stroke's wear.
     ledger : Ledger
@@ -220,6 +222,7 @@ class StrokeReport:
     wear_rates: dict[str, float]
     counters: dict[str, WornProfile]
     leaks: bool
+    leak_pressure: tuple[float, str] | None
     contour: Contour
     ledger: Ledger
     cells: Cells | None = None

@@ -122,6 +122,21 @@ class FluidPressure(Term):
             outside[contact.positions[ends]] = free_of_contact(pressure)
         return touching, outside, carried
 
+    def leak_pressure(self) -> tuple[float, str]:
+        """Fluid pressure that the contacts hold as they are [MPa], and the name of the edge that would give way first.
+
+        A seal leaks once the fluid's pressure surpasses that of the contact, everywhere along a way past it (Liu, Wang,
+        Chen & Suo, *Elastic leak of a seal*, Extreme Mech. Lett. 1 (2014) 54). Of the two ways from the inlet, the one
+        whose highest contact pressure is the lower leaks first. The contacts are those of the present state: fluid that
+        presses the part on, as it does an O-ring, makes them hold more.
+        """
+        highest = np.zeros(len(self._inlet))
+        for contact in self.contacts:
+            highest[contact.positions] = np.maximum(highest[contact.positions], contact.cauchy_pressure().max(axis=1))
+        closed = [path[highest[path].argmax()] for _, path in self._paths]
+        first = min(closed, key=lambda edge: highest[edge])
+        return float(highest[first]), str(self._body.outline.names[first])
+
     def force(self) -> np.ndarray:
         """Resultant of the fluid on the part; shape (2,) [N], or N/mm in plane strain."""
         u, kinematics = self._unknowns.state[DISPLACEMENT], self._unknowns.kinematics

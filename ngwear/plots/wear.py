@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 
 MESH = "mesh.png"
 MARGIN = 0.1  # mm, around the part
+HISTORIES = ("peak pressure [MPa]", "contact width [mm]", "leak pressure [MPa]")  # columns that end so
 COMPANIONS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run with a companion states
 
 
@@ -221,7 +222,7 @@ def _highest(snapshot: Snapshot) -> tuple[float, float]:
 
 
 def history_figure(result: ResultFile) -> Figure:
-    """Depth, peak pressure and contact width over strokes, in bands of the errors that the run states.
+    """Depth, peak pressure, contact width and leak pressure over strokes, in bands of the errors that the run states.
 
     A run with a companion knows the errors at its end, relative: they are drawn as such all along.
     """
@@ -229,7 +230,8 @@ def history_figure(result: ResultFile) -> Figure:
     stroke = series["stroke [-]"]
     # Further strokes that were looked at where the outline was kept did not wear: their contact is another.
     worn = (series["strokes in one solve [-]"] > 0) | (stroke == 0)
-    figure, axes = new_figure(3, (1.3, 1, 1), size=(8, 9))
+    endings = [e for e in HISTORIES if any(c.endswith(e) for c in series)]
+    figure, axes = new_figure(1 + len(endings), (1.3, *[1] * len(endings)), size=(8, 3.5 + 2.75 * len(endings)))
     depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
     stated = result.errors if COMPANIONS & result.errors.keys() else {}
     if stated:
@@ -241,7 +243,7 @@ def history_figure(result: ResultFile) -> Figure:
             axes[0].plot(stroke, series[name] * 1e3, color=colour, lw=1.0, label=name[9:-5])
     axes[0].set_ylabel("worn depth [µm]")
     axes[0].legend()
-    for panel, ending in ((axes[1], "peak pressure [MPa]"), (axes[2], "contact width [mm]")):
+    for panel, ending in zip(axes[1:], endings, strict=True):
         for column in [c for c in series if c.endswith(ending)]:
             for colour, kind in zip(COLOURS, kinds, strict=False):
                 mine = worn & (series["kind [-]"] == kind)
@@ -255,13 +257,13 @@ def history_figure(result: ResultFile) -> Figure:
                     color=colour,
                     lw=1.0,
                     ms=4,
-                    label=f"{column[: -len(ending) - 1]}, {kind}",
+                    label=f"{column[: -len(ending) - 1]}, {kind}".lstrip(", "),
                 )
         panel.set_ylabel(ending)
         panel.set_ylim(bottom=0)
         panel.legend()
     axes[0].set_title(result.scene)
-    axes[2].set_xlabel("strokes")
+    axes[-1].set_xlabel("strokes")
     return figure
 
 

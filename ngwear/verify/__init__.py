@@ -30,6 +30,7 @@ CASES: dict[str, str] = {
     "indentation": "ngwear.verify.indentation",
     "pin_on_plate": "ngwear.verify.pin_on_plate",
     "ring": "ngwear.verify.ring",
+    "leak_pressure": "ngwear.verify.leak_pressure",
     "block_on_ring": "ngwear.verify.block_on_ring",
     "worn_cylinder": "ngwear.verify.worn_cylinder",
     "fretting": "ngwear.verify.fretting",

@@ -1,0 +1,103 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from ngwear.companion import LEAKS, reading, stated
+from ngwear.cost_runs import wear_values
+from ngwear.effects.contact import Contact
+from ngwear.effects.elasticity import Elasticity
+from ngwear.effects.fluid_pressure import FluidPressure
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.stepping import advance
+from ngwear.fields.kinematics import PlaneStrain
+from ngwear.geometry.contour import Contour
+from ngwear.plots.wear import history_figure
+from ngwear.program import Program, Stroke
+from ngwear.result_file import read_result
+from ngwear.results import LEAK, Recorder
+from ngwear.run import run
+from ngwear.surfaces import Plane
+from ngwear.verify.builders import meshed
+from ngwear.verify.leak_pressure import PRESSURES, RUBBER, scene
+
+FIRST = "leaks first at [-]"
+
+
+@pytest.fixture(scope="module")
+def block(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("block")
+    return folder, run(scene(), out=folder)
+
+
+def test_the_way_that_is_closed_by_less_leaks_first():
+    """A block on a plate, and a tilted plate on its top: that presses harder on the fluid's way than the lower one."""
+    lower = Contact("lower", ("bottom",), Plane(point=(0.0, 0.0), normal_vector=(0.0, 1.0)), modulus=1.0)
+    tilted = Plane(point=(2.0, 0.9), normal_vector=(0.05, -1.0))
+    upper = Contact("upper", ("top",), tilted, modulus=1.0)
+    fluid = FluidPressure(("bottom", "right", "top"), ("right",), (lower, upper))
+    body = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), 0.25)
+    held = [Support(("left",), y=False)]
+    problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), lower, upper, fluid], supports=held)
+    upper.load.Set(-0.2)
+    advance(problem, {"upper approach [mm]": 0.0})
+    below, above = (contact.profile().pressure.max() for contact in (lower, upper))
+    assert above > 1.05 * below
+    assert fluid.leak_pressure() == (pytest.approx(below, rel=1e-12), "bottom")
+    assert np.allclose(lower.cauchy_pressure(), lower.profile().pressure[lower.nodes.of_edges])
+
+
+def test_a_way_without_contact_holds_nothing():
+    lower = Contact("lower", ("bottom",), Plane(point=(0.0, 0.1), normal_vector=(0.0, 1.0)), modulus=1.0)
+    fluid = FluidPressure(("bottom", "right", "top"), ("right",), (lower,))
+    body = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), 0.25)
+    held = [Support(("left",), y=False), Support(("top",), x=False)]
+    problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), lower, fluid], supports=held)
+    lower.load.Set(-0.1)
+    advance(problem, {"lower approach [mm]": 0.0})
+    assert lower.profile().pressure.max() > 0.1
+    assert fluid.leak_pressure()[0] == 0.0
+    assert fluid.leaks
+
+
+def test_series_summary_and_study_tell_what_the_seal_holds(block):
+    rows, summary = block[1].recorder.rows, block[1].summary
+    last = rows[-len(PRESSURES) :]
+    for pressure, row in zip(PRESSURES, last, strict=True):
+        assert summary[f"last {pressure:g} MPa {LEAK}"] == row[LEAK] > pressure
+        assert row[FIRST] in ("bottom", "top")
+    assert summary[LEAK] == last[-1][LEAK], "of the stroke under the highest pressure"
+    assert summary["leaks first at"] == last[-1][FIRST]
+    assert summary["warnings"] == []
+    assert wear_values(scene(), summary, rows)[LEAK] == summary[LEAK]
+
+
+def test_its_error_is_stated_and_drawn(block):
+    folder, result = block
+    read = reading(result.recorder.rows)
+    assert set(read[LEAKS]) == {f"{p:g} MPa" for p in PRESSURES}
+    other = {**read, LEAKS: {kind: (1.02 * np.array(values)).tolist() for kind, values in read[LEAKS].items()}}
+    errors = stated(scene(), result.summary["error estimates"], read, other)
+    assert errors[LEAKS] == pytest.approx(0.02)
+    file = read_result(folder)
+    pressures = history_figure(replace(file, errors=errors)).axes[-1]
+    assert pressures.get_ylabel() == LEAK
+    top = [band.get_paths()[0].vertices[:, 1].max() for band in pressures.collections]
+    leaks = [file.series[LEAK][file.series["kind [-]"] == kind].max() for kind in file.kinds]
+    assert top == pytest.approx([1.02 * leak for leak in leaks])
+
+
+def test_a_seal_that_would_leak_is_warned_of(block):
+    rows = [row | {LEAK: 2.9, FIRST: "top"} if row["kind [-]"] == "3 MPa" else row for row in block[1].recorder.rows]
+    warnings = Recorder(scene(), rows=rows)._warnings()
+    assert len(warnings) == 1
+    assert (
+        "stroke '3 MPa': the seal would leak at 'top', whose contact holds 2.9 MPa of the fluid's 3 MPa" in warnings[0]
+    )
+
+
+def test_without_a_fluid_there_is_none():
+    dry = replace(scene(), fluid=None, program=Program(cycle=(Stroke(name="still", travel=1.0),), strokes=1))
+    result = run(dry, figures=False)
+    assert not [name for name in (*result.recorder.rows[-1], *result.summary) if "leak pressure" in name]
+    assert LEAKS not in reading(result.recorder.rows)
