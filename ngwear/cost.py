@@ -88,7 +88,8 @@ def cost(
 
     Each run has a process of one thread to itself, one after the other, so that its seconds and its memory are its own.
     Decisions rest on the recorded seconds of the runs alone: a call with the same folder and budget repeats them and
-    runs nothing, one that was killed goes on, and one with a larger budget goes further.
+    runs nothing, one that was killed goes on, and one with a larger budget goes further. Where there is a sealed fluid,
+    the leak pressure is read as well, as if the scene asked for it.
 
     Parameters
     ----------
@@ -111,6 +112,8 @@ def cost(
     """
     if not 0 < budget < math.inf:
         raise SceneError("cost.budget", budget, "must be finite and greater than 0 s")
+    if isinstance(scene, Scene) and scene.fluid is not None:
+        scene = replace(scene, fluid=replace(scene.fluid, leak_pressure=True))
     chosen = knobs(scene)
     ladders = tuple(knob.ladder for knob in chosen)
     main = DEPTH if isinstance(scene, PinScene) or scene.worn_edges else PEAK

@@ -76,9 +76,12 @@ def contact_sizes(
 
     A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate, and
     what is worn brings the surfaces nearer by no more.
+
+    Where the leak pressure is asked for, also the patch's where the fluid meets a contact, followed or not.
     """
     accuracy, contour = stage.scene.accuracy, stage.body.contour
-    size = np.full(len(contour), np.inf)
+    size, fronts = np.full(len(contour), np.inf), [np.empty((0, 2))]
+    leaks = stage.fluid is not None and stage.scene.fluid.leak_pressure
     vector = stage.problem.state.vec.FV().NumPy()
     keep = vector.copy()
     for phase in phases:
@@ -95,9 +98,20 @@ def contact_sizes(
             near = (pressure > 0) | (profile.gap < soon)
             ask = _spanned(contour, profile, near)
             size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
+        if leaks:
+            fronts.append(_beside(contour, stage.fluid.fronts(), accuracy.patch))
     vector[:] = keep
-    ask = size < np.inf
-    return SizeField(contour.points[ask], size[ask], accuracy.coarse, accuracy.grading)
+    ask, fronts = size < np.inf, np.vstack(fronts)
+    seeds, sizes = np.vstack([contour.points[ask], fronts]), np.append(size[ask], np.full(len(fronts), accuracy.patch))
+    return SizeField(seeds, sizes, accuracy.coarse, accuracy.grading)
+
+
+def _beside(contour: Contour, t: Array, apart: float) -> Array:
+    """Places of the outline at parameters t, and so far to either side [mm], shape (3 len(t), 2)."""
+    points = np.arange(len(contour) + 1)
+    ways = np.concatenate([[0.0], np.cumsum(contour.lengths)])
+    there = np.interp(t, points, ways)[:, None] + apart * np.array([-1, 0, 1])
+    return contour.at(np.interp(there.ravel() % ways[-1], ways, points))
 
 
 def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:

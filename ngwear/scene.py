@@ -91,10 +91,15 @@ class ContactSpec:
 
 @dataclass(frozen=True, kw_only=True)
 class FluidSpec:
-    """Where a sealed fluid may go: ``edges`` in one piece, ``inlet`` always wetted."""
+    """Where a sealed fluid may go: ``edges`` in one piece, ``inlet`` always wetted.
+
+    ``leak_pressure`` asks what fluid pressure the contacts hold; meshes are then fine where the fluid meets them, too:
+    at its front, as at a punch's edge, a contact often presses hardest.
+    """
 
     edges: tuple[str, ...]
     inlet: tuple[str, ...]
+    leak_pressure: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

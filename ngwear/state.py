@@ -199,7 +199,7 @@ class StrokeReport:
     leaks : bool
         Whether the fluid meets no contact.
     leak_pressure : tuple of float and str, or None
-        Fluid pressure that the contacts hold [MPa], and the edge that would give way first; None without a fluid.
+        Fluid pressure that the contacts hold [MPa], and the edge that would give way first; None if not asked for.
     contour : Contour
         Outline after the stroke's wear.
     ledger : Ledger

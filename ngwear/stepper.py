@@ -367,7 +367,7 @@ class Stepper:
             wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
             counters=state.counters,
             leaks=stage.fluid is not None and stage.fluid.leaks,
-            leak_pressure=None if stage.fluid is None else stage.fluid.leak_pressure(),
+            leak_pressure=stage.fluid.leak_pressure() if stage.fluid and self.scene.fluid.leak_pressure else None,
             contour=state.contour,
             ledger=state.ledger.copy(),
             cells=state.cells,

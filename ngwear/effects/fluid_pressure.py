@@ -122,6 +122,12 @@ class FluidPressure(Term):
             outside[contact.positions[ends]] = free_of_contact(pressure)
         return touching, outside, carried
 
+    def fronts(self) -> np.ndarray:
+        """Contour parameters at which the fluid meets a contact in the present state; none on a way without one."""
+        touching, _, _ = self._contact()
+        first = [(step, path[touching[path]][:1]) for step, path in self._paths]
+        return np.concatenate([self._body.outline.t[edge, 0 if step == 1 else 1] for step, edge in first])
+
     def leak_pressure(self) -> tuple[float, str]:
         """Fluid pressure that the contacts hold as they are [MPa], and the name of the edge that would give way first.
 

@@ -45,7 +45,7 @@ def scene() -> Scene:
             for side, (y, up) in plates.items()
         ),
         supports=(SupportSpec(edges=("left",), y=False),),
-        fluid=FluidSpec(edges=("bottom", "right", "top"), inlet=("right",)),
+        fluid=FluidSpec(edges=("bottom", "right", "top"), inlet=("right",), leak_pressure=True),
         program=Program(
             cycle=tuple(Stroke(name=f"{p:g} MPa", travel=1.0, pressure=p) for p in PRESSURES), strokes=len(PRESSURES)
         ),
