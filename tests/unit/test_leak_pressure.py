@@ -1,25 +1,34 @@
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+from ngwear.adaptive import at_level
 from ngwear.companion import LEAKS, reading, stated
+from ngwear.cost import cost
 from ngwear.cost_runs import wear_values
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import advance
+from ngwear.errors import SceneError
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.contour import Contour
+from ngwear.input.tables import record
 from ngwear.plots.wear import history_figure
 from ngwear.program import Program, Stroke
 from ngwear.result_file import read_result
 from ngwear.results import LEAK, Recorder
 from ngwear.run import run
+from ngwear.scene import FluidSpec
+from ngwear.stepper import Stepper
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
 from ngwear.verify.leak_pressure import PRESSURES, RUBBER, scene
+from ngwear.verify.rod_seal import shipped_scene
 
 FIRST = "leaks first at [-]"
 
@@ -96,8 +105,38 @@ def test_a_seal_that_would_leak_is_warned_of(block):
     )
 
 
-def test_without_a_fluid_there_is_none():
-    dry = replace(scene(), fluid=None, program=Program(cycle=(Stroke(name="still", travel=1.0),), strokes=1))
-    result = run(dry, figures=False)
+@pytest.mark.parametrize("fluid", [None, replace(scene().fluid, leak_pressure=False)])
+def test_where_it_is_not_asked_for_there_is_none(fluid):
+    dry = Program(cycle=(Stroke(name="still", travel=1.0),), strokes=1)
+    result = run(replace(scene(), fluid=fluid, program=dry), figures=False)
     assert not [name for name in (*result.recorder.rows[-1], *result.summary) if "leak pressure" in name]
     assert LEAKS not in reading(result.recorder.rows)
+
+
+def test_meshes_are_fine_where_the_fluid_meets_a_contact_that_is_not_followed():
+    seal, longest = at_level(shipped_scene(), 2.5), []
+    for asked in (False, True):
+        stage = Stepper(replace(seal, fluid=replace(seal.fluid, leak_pressure=asked))).start().stage
+        bore = stage.contacts["housing bore"]
+        ends = bore.end_places()[bore.touching()]
+        edges = np.linalg.norm(np.diff(ends, axis=1), axis=2).ravel()
+        longest.append(edges[ends[:, :, 0].max(axis=1).argmax()] / stage.scene.accuracy.patch)
+    assert longest[1] < 1.5 < 2 < longest[0]
+
+
+def test_a_scene_file_asks_for_it():
+    text = (Path(__file__).parents[2] / "geometries" / "rod_seal" / "scene.toml").read_text(encoding="utf-8")
+    data = tomllib.loads(text)["fluid"]
+    assert not record(FluidSpec, "fluid", data).leak_pressure
+    assert record(FluidSpec, "fluid", data | {"leak_pressure": True}).leak_pressure
+    with pytest.raises(SceneError, match=r"fluid\.leak_pressure = 1"):
+        record(FluidSpec, "fluid", data | {"leak_pressure": 1})
+
+
+def test_a_study_reads_it_whether_it_is_asked_for_or_not(monkeypatch):
+    def seen(asked, *_):
+        raise InterruptedError(asked.fluid.leak_pressure)
+
+    monkeypatch.setattr("ngwear.cost._runner", seen)
+    with pytest.raises(InterruptedError, match="True"):
+        cost(replace(scene(), fluid=replace(scene().fluid, leak_pressure=False)), budget=1.0)
