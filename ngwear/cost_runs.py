@@ -19,6 +19,7 @@ from ngwear.scene import Scene
 from ngwear.sliding.scene import PinScene
 
 DEPTH, PEAK, LEAK = "maximum depth [mm]", "peak pressure [MPa]", "leak pressure [MPa]"
+NO_TIME = "no time was left"
 
 
 class OutOfTimeError(Exception):
@@ -58,11 +59,16 @@ def _timed(sent: float, seconds: float, call: Callable[[], Any]) -> Any:
 
     _clock.sent, _clock.over = sent, False
     signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, max(seconds - (time.time() - sent), 1e-3))
     try:
-        return call()
+        try:
+            signal.setitimer(signal.ITIMER_REAL, max(seconds - (time.time() - sent), 1e-3))
+            return call()
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+    except OutOfTimeError:  # before or after all that ``measure`` watches over: a budget may end at once
+        cpu, wall = time.process_time(), time.time() - sent
+        return Measurement(status=STOPPED, message=NO_TIME, cpu=cpu, wall=wall, memory=peak_memory())
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0.0)
         _clock.sent, _clock.over = math.nan, False
 
 
@@ -103,7 +109,7 @@ def measure(point: Point) -> Measurement:
     except Exception as error:  # a mesher or a solver outside of ngwear: kept as well, or each call would try again
         found = Measurement(status=GAVE_UP, message=f"{type(error).__name__}: {error}")
     if _clock.over and found.status == GAVE_UP:
-        found = Measurement(status=STOPPED, message="no time was left", needed=progress.needed(time.time() - sent))
+        found = Measurement(status=STOPPED, message=NO_TIME, needed=progress.needed(time.time() - sent))
     memory = peak_memory()
     return replace(found, cpu=time.process_time(), wall=time.time() - sent, memory=memory)
 

@@ -14,7 +14,7 @@ from conftest import REMEMBERS
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.cost import CSV, JSON, PNG, RUNS, cost
-from ngwear.cost_runs import Limited, Point, measure
+from ngwear.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
 from ngwear.costs import knobs as knobs_of
 from ngwear.costs.knobs import at, knobs
 from ngwear.costs.ladder import STOPPED
@@ -224,6 +224,22 @@ def test_an_alarm_that_is_swallowed_stops_the_run_all_the_same(sheet, monkeypatc
     found = Limited(Here(), 0.2).submit(measure, Point(sheet)).result()
     assert found.status == STOPPED
     assert found.message == "no time was left"
+
+
+def test_an_alarm_that_nothing_catches_stops_the_run_all_the_same():
+    """Where the time is over before the run has begun: it was told as one that gave up, and a study went on."""
+
+    def slow():
+        until = time.time() + 5.0
+        while time.time() < until:
+            _clock.check()
+
+    found = _timed(time.time() - 1.0, 0.01, slow)
+    assert (found.status, found.message) == (STOPPED, NO_TIME)
+    assert 1.0 < found.wall < 3.0
+    assert math.isnan(found.needed)
+    assert math.isnan(_clock.sent)
+    assert not _clock.over
 
 
 def test_a_run_that_gives_up_says_why(tmp_path, write_sheet):
