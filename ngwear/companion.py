@@ -57,7 +57,7 @@ WHOLE = {
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "friction force")}
-LEAKS = "leak pressure [-]"  # of scenes with a fluid
+LEAKS = "leak pressure [-]"  # of scenes that ask for it
 HERE = DrawnHere()
 PLACES = 17  # of the last half of the run, at which histories are read
 

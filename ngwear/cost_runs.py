@@ -15,10 +15,11 @@ from typing import Any
 from ngwear.costs.ladder import STOPPED, Measurement
 from ngwear.errors import NgwearError
 from ngwear.files import COMPLETED, GAVE_UP, peak_memory
+from ngwear.results import LEAK
 from ngwear.scene import Scene
 from ngwear.sliding.scene import PinScene
 
-DEPTH, PEAK, LEAK = "maximum depth [mm]", "peak pressure [MPa]", "leak pressure [MPa]"
+DEPTH, PEAK = "maximum depth [mm]", "peak pressure [MPa]"
 NO_TIME = "no time was left"
 
 

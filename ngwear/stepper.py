@@ -288,8 +288,7 @@ class Stepper:
     def _strokes(self, kind: int, done: int, repeats: int = 0) -> Strokes:
         """Strokes of a kind, the first of which begins after ``done`` strokes of any."""
         program = self.scene.program
-        kinds = len(program.cycle)
-        return Strokes(program.slid(done), program.cycle[kind].travel, program.slid(kinds), repeats)
+        return Strokes(program.slid(done), program.cycle[kind].travel, program.slid(len(program.cycle)), repeats)
 
     def _plan(self, done: int, cycles: int, end: int) -> Plan:
         """Strokes of a step that begins after ``done`` strokes: each kind in turn, and how often until ``end``."""

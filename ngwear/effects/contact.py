@@ -136,12 +136,6 @@ class Contact(UnilateralContact):
         nominal, _, _ = nodal_pressure(self.nodes, self._lengths(), self.end_pressures(), nodal=self.order == 1)
         return nominal
 
-    def cauchy_pressure(self) -> Array:
-        """Pressure on the deformed surface at both ends of each mesh edge, that of ``profile``; shape (m, 2) [MPa]."""
-        u = self._state[DISPLACEMENT]
-        stretch = self.at_nodes(self._kinematics.area_stretch(u, ng.Grad(u)))
-        return (self.nodal_pressure() / stretch)[self.nodes.of_edges]
-
     def _lengths(self) -> Array:
         """Lengths of the mesh edges where they are now [mm], as forces on them are integrated.
 

@@ -138,7 +138,9 @@ class FluidPressure(Term):
         """
         highest = np.zeros(len(self._inlet))
         for contact in self.contacts:
-            highest[contact.positions] = np.maximum(highest[contact.positions], contact.cauchy_pressure().max(axis=1))
+            profile = contact.profile()
+            pressure = profile.pressure[profile.edges].max(axis=1)
+            highest[contact.positions] = np.maximum(highest[contact.positions], pressure)
         closed = [path[highest[path].argmax()] for _, path in self._paths]
         first = min(closed, key=lambda edge: highest[edge])
         return float(highest[first]), str(self._body.outline.names[first])
