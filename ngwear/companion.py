@@ -169,7 +169,7 @@ def run_stated(
     companion shows an error of the greatest depth of no more than ``enough``, taken as of first order, there is no
     coarsest. Companions that give up lose nothing: without the coarsest, errors are taken as of first order; without
     both, those of the mesh are not known. The summary then warns. They run in ``worker``, which ends with this, or in
-    one that begins here. It draws the figures, too, if it has nothing else to do by then.
+    one that begins here. It draws half of the figures, too, if it has nothing else to do by then.
     """
     companions = _Companions(scene, Path(out), enough, worker)
 
@@ -223,9 +223,10 @@ class _Companions:
             self.worker.do(HERE.mesh, folder, scene, first)
 
     def rest(self, folder: Path) -> None:
-        """Draw the figures of the run: in the worker, if it is through with the runs."""
+        """Draw the figures of the run: half of them in the worker, if it is through with the runs."""
         if self.worker is not None and self.worker.alive and all(left_by(*run) is not None for run in self.begun):
-            self.worker.do(HERE.rest, folder)
+            self.worker.do(HERE.rest, folder, (0, 2))
+            HERE.rest(folder, (1, 2))
             if self.worker.did():
                 return
         HERE.rest(folder)  # or fail as it did

@@ -20,6 +20,8 @@ FINER = 0.7  # of the size that the contacts ask for: what the indicator must fa
 NARROWEST = 0.5  # of the patch: elements of the narrowest zones
 NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
 LEAST = 0.5  # of these: also where wear has not so much left to close
+TURN, WIDEST_TURN = 0.5, 0.7  # rad, of the outline between nodes off the contacts; with few elements across
+FOLLOWS = 4.0  # elements across from which the outline is followed as closely as it ever is
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 
@@ -103,7 +105,8 @@ def contact_sizes(
     vector[:] = keep
     ask, fronts = size < np.inf, np.vstack(fronts)
     seeds, sizes = np.vstack([contour.points[ask], fronts]), np.append(size[ask], np.full(len(fronts), accuracy.patch))
-    return SizeField(seeds, sizes, accuracy.coarse, accuracy.grading)
+    turn = TURN if across is None else min(TURN * max(1.0, FOLLOWS / across), WIDEST_TURN)
+    return SizeField(seeds, sizes, accuracy.coarse, accuracy.grading, elsewhere=turn)
 
 
 def _beside(contour: Contour, t: Array, apart: float) -> Array:

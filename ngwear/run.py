@@ -64,11 +64,11 @@ class DrawnHere:
 
         plot_mesh(folder, scene, first)
 
-    def rest(self, folder: Path) -> None:
-        """Draw all that is not there."""
+    def rest(self, folder: Path, share: tuple[int, int] = (0, 1)) -> None:
+        """Draw all that is not there, or this process's share of it (``ngwear.plots.wear.plot``)."""
         from ngwear.plots.wear import plot
 
-        plot(folder, again=False)
+        plot(folder, again=False, share=share)
 
 
 def run(

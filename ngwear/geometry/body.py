@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import ngsolve as ng
@@ -15,6 +16,8 @@ from ngwear.geometry.contour import Array, Contour
 from ngwear.geometry.harmonic import HarmonicFill
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
+
+FINER = (1.0, 2.0, 4.0)  # how much less the outline may turn along an element edge: a curved one cuts its corner
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class Body(Meshed):
     def __init__(self, contour: Contour, field: SizeField, *, on_chord: bool = False) -> None:
         self.field = field
         self.base = self.contour = fitted(contour, field, on_chord=on_chord)
-        self.mesh = section.mesh(self.base, mesh_nodes(self.base, field), field)
+        self.mesh = _meshed(self.base, field)
         self._set_up()
 
     def _set_up(self) -> None:
@@ -145,6 +148,19 @@ class Body(Meshed):
     @property
     def size(self) -> float:
         return float(np.ptp(self.contour.points, axis=0).max())
+
+
+def _meshed(contour: Contour, field: SizeField) -> ng.Mesh:
+    """Mesh an outline, with shorter edges where it turns until the mesh passes its gates, or none does."""
+    for finer in FINER[:-1]:
+        with suppress(MeshError):
+            return _mesh(contour, field, finer)
+    return _mesh(contour, field, FINER[-1])
+
+
+def _mesh(contour: Contour, field: SizeField, finer: float) -> ng.Mesh:
+    closer = replace(field, turn=field.turn / finer, elsewhere=field.elsewhere / finer)
+    return section.mesh(contour, mesh_nodes(contour, closer), field, per_radius=finer)
 
 
 def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:

@@ -24,8 +24,8 @@ class SizeField:
         Element edge far away [mm].
     grading : float
         Growth of the edge with distance [-].
-    turn : float
-        Largest turn of the outline between two mesh nodes where the field is finest [rad].
+    turn, elsewhere : float
+        Largest turn of the outline between two mesh nodes where the field is finest, and elsewhere [rad].
     """
 
     seeds: Array
@@ -33,6 +33,7 @@ class SizeField:
     coarse: float
     grading: float = 0.25
     turn: float = 0.26
+    elsewhere: float = 0.5
 
     def __call__(self, points: Array) -> Array:
         """Element edge wanted at points of shape (n, 2); shape (n,)."""
@@ -89,8 +90,7 @@ def _halved(contour: Contour, edges: tuple[str, ...], longest: float, *, curved:
 def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
     """Choose the contour points that become mesh nodes, about h apart.
 
-    Between two nodes the outline turns by at most 0.5 rad, where the field is finest by ``field.turn``. Corners
-    and changes of name are always nodes.
+    Between two nodes the outline turns by no more than the field allows. Corners and changes of name are always nodes.
     """
     n = len(contour)
     h = field(contour.points)
@@ -98,7 +98,7 @@ def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
     fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(n)])
     start = int(np.argmax(fixed))
     in_patch = h <= 1.01 * field.sizes.min() if len(field.sizes) else np.zeros(n, dtype=bool)
-    max_turn = np.where(in_patch, field.turn, 0.5)
+    max_turn = np.where(in_patch, field.turn, field.elsewhere)
     chosen = [start]
     run_length = run_turn = 0.0
     for step in range(1, n):

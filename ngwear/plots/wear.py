@@ -32,7 +32,7 @@ HISTORIES = ("peak pressure [MPa]", "contact width [mm]", "leak pressure [MPa]")
 COMPANIONS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run with a companion states
 
 
-def plot(folder: Path | str, *, again: bool = True) -> list[Path]:
+def plot(folder: Path | str, *, again: bool = True, share: tuple[int, int] = (0, 1)) -> list[Path]:
     """Draw the figures of a run into its folder; return their paths.
 
     Parameters
@@ -40,6 +40,8 @@ def plot(folder: Path | str, *, again: bool = True) -> list[Path]:
     folder : path
     again : bool
         Draw the mesh, too, if its picture is there.
+    share : (k, n)
+        Draw what falls to the k-th of n processes that draw at the same time; the mesh falls to the first, 0.
 
     Raises
     ------
@@ -50,8 +52,6 @@ def plot(folder: Path | str, *, again: bool = True) -> list[Path]:
     if not result.snapshots:
         return []
     figures = {"profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
-    if again or not (Path(folder) / MESH).is_file():
-        figures["mesh"] = mesh_figure
     if has_laws(result):
         figures["laws"] = law_figure
     if worn_counters(result):
@@ -63,9 +63,13 @@ def plot(folder: Path | str, *, again: bool = True) -> list[Path]:
         figures["stress_field"] = stress_figure
     if has_book(result):
         figures["material_book"] = book_figure
+    mine, of = share
+    chosen = dict(list(figures.items())[mine::of])
+    if mine == 0 and (again or not (Path(folder) / MESH).is_file()):
+        chosen["mesh"] = mesh_figure
     written = []
     with _style():
-        for name, draw in figures.items():
+        for name, draw in chosen.items():
             try:
                 figure = draw(result)
             except KeyError as error:

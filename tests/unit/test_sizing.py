@@ -41,6 +41,27 @@ def test_mesh_nodes_take_corners_and_name_changes_and_bound_the_turn(circle, rec
     assert len(mesh_nodes(ring, SizeField(*NOWHERE, 5.0))) >= 4, "a coarse mesh still shows the shape"
 
 
+def turns(ring, body):
+    """How far the outline turns along each mesh edge [rad], of a circle."""
+    return 2 * np.pi * np.diff(body.outline.t)[:, 0] / len(ring)
+
+
+@pytest.mark.parametrize("turn", [0.2, 0.3])
+def test_mesh_edges_turn_as_far_as_the_field_allows(circle, turn):
+    ring = circle(200)
+    body = Body(ring, SizeField(*NOWHERE, 5.0, 0.5, elsewhere=turn))
+    assert turns(ring, body).max() <= turn + 2 * np.pi / 200
+    assert np.median(turns(ring, body)) > 0.8 * turn, "the mesher itself divides no more"
+
+
+@pytest.mark.parametrize("elsewhere", [0.5, 0.7])
+def test_a_mesh_that_cuts_corners_is_made_anew_with_shorter_edges_on_curves(circle, elsewhere):
+    ring = circle(200)  # by quadratic edges that turn by 0.5 rad an area is 4e-4 too small
+    body = Body(ring, SizeField(*NOWHERE, 5.0, 0.5, elsewhere=elsewhere))
+    assert turns(ring, body).max() <= 0.5 * elsewhere + 2 * np.pi / 200
+    assert ng.Integrate(1, body.mesh) == pytest.approx(np.pi, rel=1e-4)
+
+
 def test_mesh_has_the_outlines_area_and_names(rectangle):
     body = Body(rectangle(4.0, 2.0), SizeField(*NOWHERE, 0.5))
     assert ng.Integrate(1, body.mesh) == pytest.approx(8.0, rel=1e-10)
