@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.accuracy import MOST_ACROSS
-from ngwear.companion import COARSER, COARSEST, COSTS, DEPTH, FILE, coarser, leave, left_by, reading, run_stated
+from ngwear.companion import COARSER, COARSEST, DEPTH, FILE, coarser, leave, left_by, left_of, run_stated
 from ngwear.errors import ResultError
 from ngwear.files import CHECKPOINT, COMPLETED, OutFolder
 from ngwear.results import fingerprint
@@ -80,8 +80,7 @@ def run_to_error(
         finer = next_across(across, told.mine.get(DEPTH), error) if result.status == COMPLETED else None
         if finer is None:
             return result
-        kept = {name: result.summary[name + unit] for name, unit in COSTS}
-        done.append(told.mine | {"left": kept | {"reading": reading(result.recorder.rows)}})
+        done.append(told.mine | {"left": left_of(result)})
         notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
         folder.replace(NOTES, lambda file, notes=notes: file.write(notes))
         _put_away(folder, across)

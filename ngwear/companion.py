@@ -11,6 +11,9 @@ mean square.
 Elements and jumps may err against each other, and what they make up for in one run does not last in the next. What the
 steps tell of the depth themselves is known better; no less than that is stated.
 
+With few elements across, all meshes follow a curved outline rather than what they are asked for. Where there is one
+companion, its elements in contact count for as much coarser as they are, not for twice (``coarser_by``).
+
 The estimate cannot see what all three share: the outline's points, the laws and their constants, and steps that the
 scene prescribes (``wear.step`` other than ``"jump"``). Two of these are known separately; they are stated by their
 names and added: arms of the memory that are folded away err by a bounded share of the stress, and prescribed steps by
@@ -39,14 +42,14 @@ import numpy as np
 from ngwear.accuracy import LEAST_ACROSS
 from ngwear.errors import NgwearError
 from ngwear.result_file import Snapshot
-from ngwear.results import LEAK, TORN, Recorder, fingerprint
+from ngwear.results import EDGE, LEAK, TORN, Recorder, fingerprint
 from ngwear.run import DrawnHere, Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
 from ngwear.seen_order import Reading, relative_errors
 from ngwear.workers import Worker
 
-COARSER = 2.0
+COARSER, LEAST_COARSER = 2.0, 1.2
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
 DEPTH, LOST, PEAK = "maximum depth [-]", "area lost in all [-]", "peak pressure [-]"
 WHOLE = {
@@ -112,12 +115,34 @@ def reading(rows: list[dict[str, Any]]) -> dict[str, dict[str, list[float]]]:
     return out
 
 
+def element_edge(rows: list[dict[str, Any]]) -> float:
+    """Mean edge of the elements in contact along the last half of a run [mm]; 0 if nothing touches there."""
+    late = [row for row in rows if row["stroke [-]"] >= 0.5 * rows[-1]["stroke [-]"]]
+    edges = [row[column] for row in late for column in row if column.endswith(EDGE) and row[column] > 0]
+    return float(np.mean(edges)) if edges else 0.0
+
+
+def coarser_by(mine: float, other: float) -> float:
+    """How many times as long a companion's elements in contact are, of both element edges [mm].
+
+    Twice, unless both follow a curved outline rather than what they are asked for: then they differ by less, and so do
+    their errors.
+    """
+    return float(np.clip(other / mine, LEAST_COARSER, COARSER)) if mine > 0 and other > 0 else COARSER
+
+
 def _kind(row: dict[str, Any]) -> str:
     return row["kind [-]"]
 
 
 def stated(
-    scene: Scene, embedded: Mapping[str, float], mine: Reading, other: Reading, coarsest: Reading | None = None
+    scene: Scene,
+    embedded: Mapping[str, float],
+    mine: Reading,
+    other: Reading,
+    coarsest: Reading | None = None,
+    *,
+    ratio: float = COARSER,
 ) -> dict[str, float]:
     """All errors that a run states: each quantity's whole, then by its name what of it is known separately.
 
@@ -127,9 +152,12 @@ def stated(
     embedded : mapping
         What the wear steps say of themselves, as in the summary of a run alone.
     mine, other, coarsest : mapping
-        Readings of the run and its companions; None if the coarsest gave up.
+        Readings of the run and its companions; None if the coarsest gave up, or is not needed.
+    ratio : float
+        How many times as coarse the first companion is (``coarser_by``), where there is no coarsest: three tell by
+        themselves how fast they come nearer.
     """
-    levels = relative_errors(mine, other, coarsest)
+    levels = relative_errors(mine, other, coarsest, ratio=ratio if coarsest is None else COARSER)
     out = dict(embedded)
     folded = 0.0 if scene.folding is None else scene.folding.bound
     steps = {name: embedded[name] for name in WHOLE if name in embedded}
@@ -239,7 +267,8 @@ class _Companions:
             summary["warnings"].append(f"{why}; the error of the mesh is not known")
             return
         embedded, mine = summary["error estimates"], reading(recorder.rows)
-        known = stated(self.scene, embedded, mine, other["reading"])
+        ratio = coarser_by(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
+        known = stated(self.scene, embedded, mine, other["reading"], ratio=ratio)
         left = [(other, "companion")]
         if self.enough is None or known[DEPTH] > self.enough:
             self._begin(self.runs[1:])
@@ -247,7 +276,7 @@ class _Companions:
             if "gave up" in coarsest:
                 why = f"the coarsest companion run gave up: {coarsest['gave up']}"
                 summary["warnings"].append(f"{why}; the error of the mesh is taken as of first order")
-            known = stated(self.scene, embedded, mine, other["reading"], coarsest.get("reading"))
+            known = stated(self.scene, embedded, mine, other["reading"], coarsest.get("reading"), ratio=ratio)
             left.append((coarsest, "coarsest companion"))
         summary["error estimates"] = known
         for found, name in left:
@@ -271,6 +300,13 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
     return left if left.get("scene") == fingerprint(scene) else None
 
 
+def left_of(result: Result) -> dict[str, Any]:
+    """What a run that ended leaves as a companion: its readings, its element edge, and what it took."""
+    rows = result.recorder.rows
+    read = {"reading": reading(rows), "element edge [mm]": element_edge(rows)}
+    return read | {cost: result.summary[cost + unit] for cost, unit in COSTS}
+
+
 def _leave(runs: list[tuple[Scene, Path]]) -> None:
     """Run scenes, their readings or failures into their files, each written whole, unless they are there."""
     for scene, file in runs:
@@ -278,9 +314,7 @@ def _leave(runs: list[tuple[Scene, Path]]) -> None:
             continue
         left: dict[str, Any] = {}
         try:
-            result = run_scene(scene, figures=False)
-            left |= {"reading": reading(result.recorder.rows)}
-            left |= {cost: result.summary[cost + unit] for cost, unit in COSTS}
+            left |= left_of(run_scene(scene, figures=False))
         except NgwearError as error:
             left["gave up"] = str(error)
         leave(scene, file, left)

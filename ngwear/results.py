@@ -35,7 +35,7 @@ def fingerprint(scene: Scene) -> str:
 
 POINTS_ALONG = 200  # on a straight worn edge as long as the section: where depth is measured
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
-LEAK = "leak pressure [MPa]"
+LEAK, EDGE = "leak pressure [MPa]", "element edge in contact [mm]"
 TORN = "area lost in all by tearing [-]"  # what of its error is known separately
 BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
 
@@ -109,6 +109,7 @@ class Recorder:
             row[f"{contact} width at the peak [mm]"] = 0.0 if highest is None else highest.width
             row[f"{contact} contact width [mm]"] = sum(z.width for z in zones)
             row[f"{contact} contact zones [-]"] = len(zones)
+            row[f"{contact} {EDGE}"] = profile.element_edge
         for name, counter in report.counters.items():
             row[f"{name} counter-surface depth [mm]"] = float(counter.depth.max())
             row[f"{name} counter-surface worn area [mm^2]"] = counter.area

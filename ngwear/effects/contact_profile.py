@@ -145,6 +145,14 @@ class ContactProfile:
             mean=pressure.mean(axis=1),
         )
 
+    @property
+    def element_edge(self) -> float:
+        """Mean length of the mesh edges in contact, by the load that they bear [mm]; 0 out of contact."""
+        ends = self.reference[self.edges]
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        load = length * np.maximum(self.mean, 0.0)
+        return float(load @ length / load.sum()) if load.any() else 0.0
+
     def straight(self) -> ContactProfile:
         """The same with loads by the lumped pressures, the sum as it is, and pressures straight between nodes."""
         load = self.nominal_pressure * self.weight

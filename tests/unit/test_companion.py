@@ -6,12 +6,28 @@ import numpy as np
 import pytest
 
 from ngwear import companion
-from ngwear.companion import COARSEST, DEPTH, FILE, LOST, PEAK, PLACES, coarser, reading, run_stated, stated
+from ngwear.companion import (
+    COARSER,
+    COARSEST,
+    DEPTH,
+    FILE,
+    LEAST_COARSER,
+    LOST,
+    PEAK,
+    PLACES,
+    coarser,
+    coarser_by,
+    element_edge,
+    reading,
+    run_stated,
+    stated,
+)
 from ngwear.materials import PronySeries
 from ngwear.plots import wear
 from ngwear.result_file import read_result
 from ngwear.results import TORN, fingerprint
 from ngwear.run import run
+from ngwear.scene import Wear
 from ngwear.seen_order import relative_errors
 from ngwear.verify.no_loss import scene
 from ngwear.workers import Worker
@@ -137,8 +153,23 @@ def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
     assert summary["warnings"] == [
         "the coarsest companion run gave up: no equilibrium; the error of the mesh is taken as of first order"
     ]
-    found = relative_errors(reading(result.recorder.rows), other["reading"])
+    ratio = coarser_by(element_edge(result.recorder.rows), other["element edge [mm]"])
+    found = relative_errors(reading(result.recorder.rows), other["reading"], ratio=ratio)
     assert summary["error estimates"]["peak pressure [-]"] == pytest.approx(found["peak pressure [-]"])
+
+
+def test_a_companion_counts_for_as_much_coarser_as_its_elements_in_contact_are(finished):
+    folder, result = finished
+    edge = element_edge(result.recorder.rows)
+    assert 0.5 < edge / result.summary["element edge in the contact [mm]"] < 1.5
+    assert json.loads((folder / FILE).read_text())["element edge [mm]"] > 1.5 * edge
+    assert [coarser_by(0.1, other) for other in (0.1, 0.15, 0.2, 0.3)] == pytest.approx([LEAST_COARSER, 1.5, 2, 2])
+    assert coarser_by(0.1, 0.0) == coarser_by(0.0, 0.1) == COARSER
+    mine, other, coarsest = ({DEPTH: {"d": [d]}} for d in (1.0, 1.04, 1.12))
+    jumps = replace(scene("implicit"), deactivation=None, wear=Wear())
+    two, three = stated(jumps, {}, mine, other, ratio=1.5), stated(jumps, {}, mine, other, coarsest, ratio=1.5)
+    assert two[DEPTH] == pytest.approx(0.04 / 0.5)
+    assert three[DEPTH] == pytest.approx(0.04), "three tell their order"
 
 
 @pytest.mark.parametrize(("over", "needed"), [(1.01, False), (0.99, True)])
@@ -148,7 +179,8 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
         shutil.copy(folder / name, tmp_path / name)
     mine, other = reading(result.recorder.rows), json.loads((folder / FILE).read_text())["reading"]
     errors = result.summary["error estimates"]
-    two = relative_errors(mine, other)[DEPTH] + errors["maximum depth by the wear steps alone [-]"]
+    ratio = coarser_by(element_edge(result.recorder.rows), json.loads((folder / FILE).read_text())["element edge [mm]"])
+    two = relative_errors(mine, other, ratio=ratio)[DEPTH] + errors["maximum depth by the wear steps alone [-]"]
     summary = run_stated(scene("implicit"), out=tmp_path, enough=over * two, figures=False).summary
     assert ("solves of the coarsest companion" in summary) is needed
     assert summary["error estimates"][DEPTH] == pytest.approx(errors[DEPTH] if needed else two)
