@@ -85,6 +85,24 @@ def test_narrow_zones_have_elements_of_their_own():
     assert element_edges(replace(profile, pressure=np.zeros(12)), patch, 4.0) == pytest.approx(patch)
 
 
+def test_the_element_edge_in_contact_is_the_mean_by_load():
+    place = np.stack([[0.0, 0.1, 0.3, 0.6], np.zeros(4)], axis=1)
+    values = dict.fromkeys(("nominal_pressure", "pressure", "gap", "weight", "load"), np.zeros(4))
+    edges, t = np.array([[0, 1], [1, 2], [2, 3]]), np.arange(4.0)
+    profile = ContactProfile(
+        t=t, reference=place, place=2 * place, edges=edges, mean=np.array([3.0, 1.0, -1.0]), **values
+    )
+    assert profile.element_edge == pytest.approx((0.3 * 0.1 + 0.2 * 0.2) / 0.5)
+    assert replace(profile, mean=np.zeros(3)).element_edge == 0.0
+
+
+def test_few_elements_across_follow_the_outline_less_closely(sheet):
+    state = Stepper(replace(sheet, accuracy=Accuracy(across=4.0))).start()
+    stage, phases = state.stage, [p.vector for p in state.phases]
+    turns = [contact_sizes(stage, phases, across=across).elsewhere for across in (None, 8.0, 4.0, 3.0, 2.5, 1.0)]
+    assert turns == pytest.approx([0.5, 0.5, 0.5, 2 / 3, 0.7, 0.7])
+
+
 def test_elements_across_are_counted_in_each_zone(sheet):
     state = Stepper(replace(sheet, accuracy=Accuracy(across=6.0))).start()
     stage, phases = state.stage, [p.vector for p in state.phases]
