@@ -48,7 +48,7 @@ def explain(
 
     assumed, across = assumed or Assumed(), scene.accuracy.across
     scene = laid_out(scene)
-    stage = Stage(scene, unworn_body(scene))
+    stage = Stage(scene, unworn_body(scene, across))
     problem, material = stage.problem, scene.material
     brought = costs(problem, _owners(scene, problem.names))
     pressing = press(scene, stage, on_mount=on_mount)

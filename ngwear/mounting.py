@@ -37,13 +37,13 @@ def warn_if_unstable(scene: Scene) -> None:
         )
 
 
-def unworn_body(scene: Scene) -> Body | ElementBody:
-    """The unworn section, meshed for mounting."""
+def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody:
+    """The unworn section, meshed for mounting; ``across`` as of ``mounting_field``."""
     if scene.deactivation is not None:
         from ngwear import deactivation
 
         return deactivation.element_body(scene)
-    return Body(unworn_outline(scene), mounting_field(scene))
+    return Body(unworn_outline(scene), mounting_field(scene, across))
 
 
 def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:

@@ -105,8 +105,18 @@ def contact_sizes(
     vector[:] = keep
     ask, fronts = size < np.inf, np.vstack(fronts)
     seeds, sizes = np.vstack([contour.points[ask], fronts]), np.append(size[ask], np.full(len(fronts), accuracy.patch))
-    turn = TURN if across is None else min(TURN * max(1.0, FOLLOWS / across), WIDEST_TURN)
-    return SizeField(seeds, sizes, accuracy.coarse, accuracy.grading, elsewhere=turn)
+    return replace(SizeField(seeds, sizes, accuracy.coarse, accuracy.grading), **_on_curves(across))
+
+
+def _on_curves(across: float | None) -> dict[str, float]:
+    """How closely elements follow curves; by Netgen's own bound, two edges a radius, if lengths are given.
+
+    With elements across by one edge a radius: two give the shipped rod seal a fourth more elements at 2.5 across, where
+    nothing touches.
+    """
+    if across is None:
+        return {}
+    return {"elsewhere": min(TURN * max(1.0, FOLLOWS / across), WIDEST_TURN), "per_radius": 1.0}
 
 
 def _beside(contour: Contour, t: Array, apart: float) -> Array:
@@ -171,8 +181,11 @@ def unworn_outline(scene: Scene) -> Contour:
     return smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch)
 
 
-def mounting_field(scene: Scene) -> SizeField:
-    """Element sizes while the part is mounted: the followed edges fine enough for their shape."""
+def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
+    """Element sizes while the part is mounted: the followed edges fine enough for their shape.
+
+    ``across`` is that of a scene whose lengths come from it.
+    """
     accuracy, contour = scene.accuracy, scene.contour
     curved = np.abs(contour.turning) > 1e-3
     mine = np.zeros(len(contour), dtype=bool)
@@ -183,7 +196,8 @@ def mounting_field(scene: Scene) -> SizeField:
     for spec in scene.followed:
         if len(seeds) == 0 or spec.force is not None:
             seeds = np.vstack([seeds, _nearest_place(scene, spec)])
-    return SizeField(seeds, np.full(len(seeds), accuracy.mounting), accuracy.coarse, max(accuracy.grading, 0.3), 0.5)
+    sizes, grading = np.full(len(seeds), accuracy.mounting), max(accuracy.grading, 0.3)
+    return replace(SizeField(seeds, sizes, accuracy.coarse, grading, turn=0.5), **_on_curves(across))
 
 
 def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:

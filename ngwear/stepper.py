@@ -79,7 +79,7 @@ class Stepper:
             If a surface that shall wear the part does not touch it in any stroke.
         """
         scene, accuracy = self.scene, self.scene.accuracy
-        stage = Stage(scene, unworn_body(scene))
+        stage = Stage(scene, unworn_body(scene, self._across))
         cycles = scene.program.strokes / len(scene.program.cycle)
         longest = min(scene.wear.max_jump, max(1, math.ceil(accuracy.longest_jump * cycles)))
         first = 1 if scene.deactivation is not None else max(1, longest // FIRST)  # what is pulled too hard tears

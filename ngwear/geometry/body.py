@@ -154,13 +154,17 @@ def _meshed(contour: Contour, field: SizeField) -> ng.Mesh:
     """Mesh an outline, with shorter edges where it turns until the mesh passes its gates, or none does."""
     for finer in FINER[:-1]:
         with suppress(MeshError):
-            return _mesh(contour, field, finer)
-    return _mesh(contour, field, FINER[-1])
+            return _mesh(contour, _closer(field, finer))
+    return _mesh(contour, _closer(field, FINER[-1]))
 
 
-def _mesh(contour: Contour, field: SizeField, finer: float) -> ng.Mesh:
-    closer = replace(field, turn=field.turn / finer, elsewhere=field.elsewhere / finer)
-    return section.mesh(contour, mesh_nodes(contour, closer), field, per_radius=finer)
+def _mesh(contour: Contour, field: SizeField) -> ng.Mesh:
+    return section.mesh(contour, mesh_nodes(contour, field), field)
+
+
+def _closer(field: SizeField, finer: float) -> SizeField:
+    turns = {"turn": field.turn / finer, "elsewhere": field.elsewhere / finer}
+    return replace(field, **turns, per_radius=field.per_radius * finer)
 
 
 def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:

@@ -165,9 +165,9 @@ class Contour:
             length = self.lengths[run[:-1]]
             knots = np.concatenate([[0.0], np.cumsum(length)])
             data = values[run]
-            share = (knots / knots[-1])[:, None]
-            if np.allclose(data, data[0] + share * (data[-1] - data[0]), rtol=0, atol=1e-12 * knots[-1]):
-                slope = np.repeat((data[-1:] - data[:1]) / knots[-1], len(run), axis=0)  # straight
+            straight = data[0] + (knots / knots[-1])[:, None] * (data[-1] - data[0])
+            if np.abs(data - straight).max() <= 1e-12 * knots[-1]:
+                slope = np.repeat((data[-1:] - data[:1]) / knots[-1], len(run), axis=0)
             else:
                 from scipy.interpolate import CubicSpline
 
@@ -186,9 +186,11 @@ class Contour:
 
     def at(self, t: Any, controls: Array | None = None) -> Array:
         """Evaluate the outline, or data with ``controls``, at contour parameters t; shape (len(t), m)."""
-        control = self.bezier if controls is None else controls
         t = np.atleast_1d(np.asarray(t, dtype=float))
         segment = np.floor(t).astype(int)
+        if controls is None and (t == segment).all():
+            return self.points[segment % len(self)]  # no spline is needed
+        control = self.bezier if controls is None else controls
         s = (t - segment)[:, None]
         b = control[segment % len(self)]
         r = 1 - s

@@ -26,6 +26,8 @@ class SizeField:
         Growth of the edge with distance [-].
     turn, elsewhere : float
         Largest turn of the outline between two mesh nodes where the field is finest, and elsewhere [rad].
+    per_radius : float
+        Element edges over the outline's radius of curvature, at least [-].
     """
 
     seeds: Array
@@ -34,6 +36,7 @@ class SizeField:
     grading: float = 0.25
     turn: float = 0.26
     elsewhere: float = 0.5
+    per_radius: float = 2.0
 
     def __call__(self, points: Array) -> Array:
         """Element edge wanted at points of shape (n, 2); shape (n,)."""

@@ -40,7 +40,7 @@ def fine_along_the_edges(edge):
     from ngwear import mounting, refinement, remesh
     from ngwear.geometry.sizing import SizeField, fitted
 
-    def field(scene):
+    def field(scene, across=None):
         contour, accuracy = scene.contour, scene.accuracy
         everywhere = SizeField(contour.points, np.full(len(contour), edge), edge)
         dense = fitted(contour, everywhere)
