@@ -21,7 +21,7 @@ NARROWEST = 0.5  # of the patch: elements of the narrowest zones
 NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
 LEAST = 0.5  # of these: also where wear has not so much left to close
 TURN, WIDEST_TURN = 0.5, 0.7  # rad, of the outline between nodes off the contacts; with few elements across
-FOLLOWS = 4.0  # elements across from which the outline is followed as closely as it ever is
+FEW = 4.0  # elements across; with two more all follow the outline as closely as they ever do
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 
@@ -105,18 +105,17 @@ def contact_sizes(
     vector[:] = keep
     ask, fronts = size < np.inf, np.vstack(fronts)
     seeds, sizes = np.vstack([contour.points[ask], fronts]), np.append(size[ask], np.full(len(fronts), accuracy.patch))
-    return replace(SizeField(seeds, sizes, accuracy.coarse, accuracy.grading), **_on_curves(across))
+    turn = TURN if across is None else min(TURN * max(1.0, FEW / across), WIDEST_TURN)
+    lengths = (accuracy.coarse, accuracy.grading)
+    return SizeField(seeds, sizes, *lengths, elsewhere=turn, per_radius=_per_radius(across))
 
 
-def _on_curves(across: float | None) -> dict[str, float]:
-    """How closely elements follow curves; by Netgen's own bound, two edges a radius, if lengths are given.
+def _per_radius(across: float | None) -> float:
+    """Element edges over the outline's radius of curvature, at least: fewer with few elements across.
 
-    With elements across by one edge a radius: two give the shipped rod seal a fourth more elements at 2.5 across, where
-    nothing touches.
+    Two, Netgen's own bound, would give the shipped rod seal, on 2.5 across, a fourth more elements where nothing touches.
     """
-    if across is None:
-        return {}
-    return {"elsewhere": min(TURN * max(1.0, FOLLOWS / across), WIDEST_TURN), "per_radius": 1.0}
+    return 2.0 if across is None else float(np.clip(across / 2 - 1.0, 1.0, 2.0))
 
 
 def _beside(contour: Contour, t: Array, apart: float) -> Array:
@@ -197,7 +196,7 @@ def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
         if len(seeds) == 0 or spec.force is not None:
             seeds = np.vstack([seeds, _nearest_place(scene, spec)])
     sizes, grading = np.full(len(seeds), accuracy.mounting), max(accuracy.grading, 0.3)
-    return replace(SizeField(seeds, sizes, accuracy.coarse, grading, turn=0.5), **_on_curves(across))
+    return SizeField(seeds, sizes, accuracy.coarse, grading, turn=0.5, per_radius=_per_radius(across))
 
 
 def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:

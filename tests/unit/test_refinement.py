@@ -99,8 +99,9 @@ def test_the_element_edge_in_contact_is_the_mean_by_load():
 def test_few_elements_across_follow_the_outline_less_closely(sheet):
     state = Stepper(replace(sheet, accuracy=Accuracy(across=4.0))).start()
     stage, phases = state.stage, [p.vector for p in state.phases]
-    turns = [contact_sizes(stage, phases, across=across).elsewhere for across in (None, 8.0, 4.0, 3.0, 2.5, 1.0)]
-    assert turns == pytest.approx([0.5, 0.5, 0.5, 2 / 3, 0.7, 0.7])
+    fields = [contact_sizes(stage, phases, across=across) for across in (None, 8.0, 6.0, 5.0, 4.0, 3.0, 2.5, 1.0)]
+    assert [f.elsewhere for f in fields] == pytest.approx([0.5, 0.5, 0.5, 0.5, 0.5, 2 / 3, 0.7, 0.7])
+    assert [f.per_radius for f in fields] == pytest.approx([2.0, 2.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0])
 
 
 def test_elements_across_are_counted_in_each_zone(sheet):
