@@ -113,7 +113,7 @@ def contact_sizes(
 def _per_radius(across: float | None) -> float:
     """Element edges over the outline's radius of curvature, at least: fewer with few elements across.
 
-    Two, Netgen's own bound, would give the shipped rod seal, on 2.5 across, a fourth more elements where nothing touches.
+    Two, Netgen's own bound, give the shipped rod seal, on 2.5 across, a fourth more elements where nothing touches.
     """
     return 2.0 if across is None else float(np.clip(across / 2 - 1.0, 1.0, 2.0))
 
