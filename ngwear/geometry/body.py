@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -152,19 +151,14 @@ class Body(Meshed):
 
 def _meshed(contour: Contour, field: SizeField) -> ng.Mesh:
     """Mesh an outline, with shorter edges where it turns until the mesh passes its gates, or none does."""
-    for finer in FINER[:-1]:
-        with suppress(MeshError):
-            return _mesh(contour, _closer(field, finer))
-    return _mesh(contour, _closer(field, FINER[-1]))
-
-
-def _mesh(contour: Contour, field: SizeField) -> ng.Mesh:
-    return section.mesh(contour, mesh_nodes(contour, field), field)
-
-
-def _closer(field: SizeField, finer: float) -> SizeField:
-    turns = {"turn": field.turn / finer, "elsewhere": field.elsewhere / finer}
-    return replace(field, **turns, per_radius=field.per_radius * finer)
+    for finer in FINER:
+        turns = {"turn": field.turn / finer, "elsewhere": field.elsewhere / finer}
+        closer = replace(field, **turns, per_radius=field.per_radius * finer)
+        try:
+            return section.mesh(contour, mesh_nodes(contour, closer), closer)
+        except MeshError as error:
+            refused = error
+    raise refused
 
 
 def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:
