@@ -23,23 +23,30 @@ class Faces:
 
     Attributes
     ----------
-    corners : array, shape (n, 3, 3)
-        Deformed coordinates of the corners [mm].
-    reference : array, shape (n, 3)
-        Reference coordinates of the centres [mm].
+    corners, undeformed : array, shape (n, 3, 3)
+        Deformed and reference coordinates of the corners [mm].
     pressure : array, shape (n,)
         Cauchy pressure [MPa].
     """
 
     corners: Array
-    reference: Array
+    undeformed: Array
     pressure: Array
+
+    @property
+    def reference(self) -> Array:
+        """Reference coordinates of the centres, shape (n, 3) [mm]."""
+        return self.undeformed.mean(axis=1)
 
     @property
     def areas(self) -> Array:
         """Areas as deformed, shape (n,) [mm²]."""
-        a, b, c = np.moveaxis(self.corners, 1, 0)
-        return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        return _areas(self.corners)
+
+    @property
+    def reference_areas(self) -> Array:
+        """Areas as undeformed, shape (n,) [mm²]."""
+        return _areas(self.undeformed)
 
     @property
     def peak(self) -> float:
@@ -109,11 +116,11 @@ class PatchContact(UnilateralContact):
     def faces(self) -> Faces:
         """Pressures and places of the present state."""
         u = self._state[DISPLACEMENT]
-        deformed = np.stack([self._sample(c + u[i]) for i, c in enumerate(COORDINATES)], axis=-1)
-        centres = np.stack([self._sample(c)[:, 3] for c in COORDINATES], axis=-1)
+        undeformed = np.stack([self._sample(c) for c in COORDINATES], axis=-1)
+        moved = undeformed + np.stack([self._sample(u[i]) for i in range(3)], axis=-1)
         stretch = self._sample(self._kinematics.area_stretch(u, ng.Grad(u)))[:, 3]
         nominal = self._state[self.pressure_name].vec.FV().NumPy()[self._dofs]
-        return Faces(deformed[:, :3], centres, np.maximum(nominal, 0.0) / stretch)
+        return Faces(moved[:, :3], undeformed[:, :3], np.maximum(nominal, 0.0) / stretch)
 
     def peak(self) -> float:
         return float(self.faces().pressure.max(initial=0.0))
@@ -156,3 +163,8 @@ class PatchContact(UnilateralContact):
     def resistance(self) -> float:
         """Force along the track that the pressure puts on the part [N]."""
         return self.turning(self.surface.normal(*self.place(self._state)))
+
+
+def _areas(corners: Array) -> Array:
+    a, b, c = np.moveaxis(corners, 1, 0)
+    return 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
