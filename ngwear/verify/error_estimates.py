@@ -13,7 +13,7 @@ and finer ones show the mesh, not the solution.
 The section that loses elements is in ``torn_seal``, which has the run on finer elements.
 
 Of the depth of the seal that remembers no order shows in the three readings: against a run with a half of everything
-it was at 2.9 to 3.1, against a quarter it is at 2.1. The pin's contact area was at 3.8 while its edge was told by the
+it was at 2.9 to 3.1, against a quarter it is at 2.2. The pin's contact area was at 3.8 while its edge was told by the
 gaps outside, which scatter on the coarser mesh; told by the pressures inside it is at 1.8 (``sliding.patch``).
 
 These are not blind: the bounds of the order, what counts as scatter and which coarsest run is left out
@@ -23,7 +23,7 @@ shaft's longest jump (with 0.12 its contact's width is at 0.35) and that frictio
 end alone, the seal that remembers is at 2.9 to 3.2). At other levels, and on other scenes, expect more to miss, widths
 of contacts and coarse levels first.
 
-Takes two hours of one core: both seals' finest runs half an hour each, the pin's as much.
+Takes one to two hours of one core, most of it the finest runs of both seals and of the pin.
 """
 
 from __future__ import annotations
