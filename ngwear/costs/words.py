@@ -156,5 +156,18 @@ def _not_run(study: Study) -> list[str]:
 
 
 def _failed(study: Study) -> list[str]:
-    failed = [(s, run) for s, run in study.runs.items() if not run.ok and run.status != STOPPED]
-    return [f"With {_differs(study, s)} it gave up: {run.message.splitlines()[0]}." for s, run in failed]
+    failed: dict[str, list[Setting]] = {}
+    for setting, run in study.runs.items():
+        if not run.ok and run.status != STOPPED:
+            failed.setdefault(run.message.splitlines()[0], []).append(setting)
+    return [f"With {_alike(study, settings)} it gave up: {reason}." for reason, settings in failed.items()]
+
+
+def _alike(study: Study, settings: Sequence[Setting]) -> str:
+    """Settings by what all of them change in the base, else each by what it changes."""
+    first, *others = settings
+    common = [k for k, i in enumerate(first) if i != study.base[k] and all(s[k] == i for s in others)]
+    if others and common:
+        words = " and ".join(_labelled(study.ladders[k], first[k]) for k in common)
+        return f"{words}, in {len(settings)} settings,"
+    return ", and with ".join(_differs(study, setting) for setting in settings)

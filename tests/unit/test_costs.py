@@ -227,9 +227,18 @@ def test_a_rung_that_gives_up_does_not_lose_the_others():
     assert set(study.rungs(1)) == {1, 2, 3, 4}
     assert choices[0].measured
     text = paragraph("block", study, choices, 1000.0)
-    assert text.count("gave up: no equilibrium") == 3
+    assert "With edge 0.4, and with jump 0.32, and with edge 0.025 it gave up: no equilibrium." in text
     assert [row["reason [-]"] for row in table(study)].count("no equilibrium") == 3
     assert math.isinf(study.part(0, 0, DEPTH)), "nothing is known of a rung that gave up below the finest"
+
+
+def test_settings_that_give_up_alike_are_told_by_what_they_have_in_common():
+    study, choices, _ = study_of(1000.0)
+    study.runs |= {(1, i): Measurement(status=GAVE_UP, message="no equilibrium", wall=1.0) for i in (0, 1, 3)}
+    study.runs[(0, 3)] = Measurement(status=GAVE_UP, message="torn", wall=1.0)
+    text = paragraph("block", study, choices, 1000.0)
+    assert "With edge 0.2, in 3 settings, it gave up: no equilibrium." in text
+    assert "With edge 0.4, jump 0.005 it gave up: torn." in text
 
 
 def test_measured_error_beyond_the_target_gives_way():
