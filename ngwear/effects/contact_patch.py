@@ -14,7 +14,8 @@ from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 NEAR_PEAK = 0.8  # of the highest pressure: faces through whose pressures the paraboloid is laid
-FEWEST = 12  # of them, for its six coefficients
+LOADED = 1e-3  # of the highest pressure
+FEWEST = 12  # of the faces near the peak, for its six coefficients
 
 
 @dataclass(frozen=True)
@@ -37,6 +38,11 @@ class Faces:
     def reference(self) -> Array:
         """Reference coordinates of the centres, shape (n, 3) [mm]."""
         return self.undeformed.mean(axis=1)
+
+    @property
+    def loaded(self) -> NDArray[np.bool_]:
+        """Whether each bears more than a thousandth of the highest pressure, shape (n,)."""
+        return self.pressure > LOADED * self.pressure.max(initial=0.0)
 
     @property
     def areas(self) -> Array:
@@ -125,11 +131,9 @@ class PatchContact(UnilateralContact):
     def peak(self) -> float:
         return float(self.faces().pressure.max(initial=0.0))
 
-    def at(self, places: Array) -> tuple[Array, Array]:
-        """Gaps [mm] and deformed coordinates at places of the reference faces, both (n, 3) [mm]."""
-        points = self._body.mesh(*places.T, ng.BND)
-        moved = places + np.asarray(self._state[DISPLACEMENT](points))
-        return np.asarray(self.gap(self._state)(points)).ravel(), moved
+    def deformed(self, places: Array) -> Array:
+        """Deformed coordinates of places of the reference faces, both of shape (n, 3) [mm]."""
+        return places + np.asarray(self._state[DISPLACEMENT](self._body.mesh(*places.T, ng.BND)))
 
     def take_pressure(self, other: PatchContact) -> None:
         """Start from the nominal pressure that another contact with the same faces, differently meshed, has."""

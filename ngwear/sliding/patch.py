@@ -14,7 +14,6 @@ Array = NDArray[np.float64]
 RAYS = 72
 DEGREE = 4  # of the polynomial
 SPLIT = 6  # parts of a face's sides: 36 points a face
-LOADED = 1e-3  # of the highest pressure
 WELL = 0.15  # of the highest pressure: faces from which the fit starts
 
 
@@ -49,7 +48,7 @@ def contact_patch(contact: PatchContact) -> Patch:
     faces = contact.faces()
     edge = _edge(faces)
     height = faces.reference[0, 2]
-    _, moved = contact.at(np.column_stack([edge, np.full(RAYS, height)]))
+    moved = contact.deformed(np.column_stack([edge, np.full(RAYS, height)]))
     from_axis = moved[:, :2] - np.array(contact.surface.centre[:2])
     turn = np.unwrap(np.arctan2(*from_axis.T[::-1]))
     radius = contact.surface.radius
@@ -67,7 +66,7 @@ def _edge(faces: Faces) -> Array:
     """Reference coordinates of the edge, along rays from the middle of the contact, shape (72, 2) [mm]."""
     share = faces.pressure / faces.pressure.max()
     corners = faces.undeformed[:, :, :2]
-    loaded = share > LOADED
+    loaded = faces.loaded
     near = loaded | _touching(corners, loaded)
     corners, share, loaded = corners[near], share[near], loaded[near]
     middle = corners[loaded].mean(axis=(0, 1))

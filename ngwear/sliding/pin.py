@@ -149,7 +149,7 @@ class PinStage:
     def disc(self) -> tuple[float, float, float]:
         """Middle and radius of the reference disc that holds the contact [mm]."""
         faces = self.contact.faces()
-        on = faces.reference[faces.pressure > 1e-3 * faces.pressure.max(), :2]
+        on = faces.reference[faces.loaded, :2]
         middle = 0.5 * (on.min(axis=0) + on.max(axis=0))
         return float(middle[0]), float(middle[1]), float(np.linalg.norm(on - middle, axis=1).max())
 

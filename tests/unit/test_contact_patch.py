@@ -59,7 +59,7 @@ def under_hertz(edge, *, half_axes=(3.0, 2.5), scatter=0.0, seed=1):
     p = HIGHEST * np.sqrt(np.maximum(1 - ((points / half_axes) ** 2).sum(axis=2), 0.0)).mean(axis=1)
     faces = Faces(corners, corners, p * (1 + scatter * rng.normal(size=len(p))))
     ball = SimpleNamespace(radius=1e4, centre=(0.0, 0.0, 1e4))
-    return SimpleNamespace(faces=lambda: faces, at=lambda places: (np.zeros(len(places)), places), surface=ball)
+    return SimpleNamespace(faces=lambda: faces, deformed=lambda places: places, surface=ball)
 
 
 @pytest.mark.parametrize(("edge", "off"), [(0.6, 0.004), (0.3, 0.002)])
