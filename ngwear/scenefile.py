@@ -94,7 +94,9 @@ def _accuracy(table: Any) -> Accuracy:
     """Knobs one by one, or all of them by the name of a preset."""
     if not isinstance(table, dict) or "preset" not in table:
         return record(Accuracy, "accuracy", table)
-    known("accuracy.", table, {"preset"})
+    known("accuracy.", table, {"preset", *Accuracy.__dataclass_fields__})
+    for key in table.keys() - {"preset"}:
+        raise SceneError(f"accuracy.{key}", table[key], f"the preset {table['preset']!r} chooses it: leave either out")
     return Accuracy.preset(typed("accuracy.preset", table["preset"], "str"))
 
 
