@@ -56,6 +56,9 @@ class Accuracy:
         program. 1, which limits nothing, unless given, or with ``across``.
     folding_error : float
         Largest relative error of stress that arms of the memory may cause by being folded away [-].
+    parts : int
+        Into how many equal parts each stroke is divided, each with a solve of its own: the time step of rubber with
+        memory, whose strain is taken to stand still in each (``cycle_memory``).
     across : float or None
         Elements across the contacts, on the average by load, instead of lengths: the run chooses ``patch`` with each
         new mesh, for each zone of a contact by its own width, and by the section's size the other lengths. Tolerances
@@ -76,6 +79,7 @@ class Accuracy:
     longest_jump: float | None = None
     depth_error: float | None = None
     folding_error: float = 1e-3
+    parts: int = 1
     across: float | None = None
     error: float | None = None
 
@@ -107,12 +111,12 @@ class Accuracy:
         return cls.preset("reference")
 
     def given(self, other: Accuracy) -> Accuracy:
-        """The other's lengths and tolerances, or what stands for them, with this one's order, folding and grading.
+        """The other's lengths and tolerances, or what stands for them, with this one's order, folding, parts, grading.
 
         A grading that is as it is for this one's elements across, becomes as it is for the other's.
         """
         grading = other.grading if self.grading in (None, _usual_grading(self.across)) else self.grading
-        return replace(other, grading=grading, order=self.order, folding_error=self.folding_error)
+        return replace(other, grading=grading, order=self.order, folding_error=self.folding_error, parts=self.parts)
 
     def with_across(self, across: float, **tolerances: float) -> Accuracy:
         """So many elements across instead, with these tolerances; the grading goes along as in ``given``."""
@@ -128,6 +132,7 @@ class Accuracy:
         require(
             0 <= self.folding_error < 1, "accuracy.folding_error", self.folding_error, "must be at least 0, below 1"
         )
+        require(self.parts >= 1, "accuracy.parts", self.parts, "must be at least 1: the stroke in one piece")
         if self.error is not None:
             return
         finer = 1.0 if self.across is None else ALIKE / self.across

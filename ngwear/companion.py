@@ -15,9 +15,9 @@ With few elements across, all meshes follow a curved outline rather than what th
 companion, its elements in contact count for as much coarser as they are, not for twice (``coarser_by``).
 
 The estimate cannot see what all three share: the outline's points, the laws and their constants, and steps that the
-scene prescribes (``wear.step`` other than ``"jump"``). Two of these are known separately; they are stated by their
-names and added: arms of the memory that are folded away err by a bounded share of the stress, and prescribed steps by
-what the embedded estimate says of depth and area. Time has no steps: strokes integrate the arms exactly.
+scene prescribes (``wear.step`` other than ``"jump"``), and the time step. Three of these are known separately; they are
+stated by their names and added: arms of the memory that are folded away err by a bounded share of the stress,
+prescribed steps by what the embedded estimate says of depth and area, and the time step by what ``time_step`` finds.
 
 What friction tears out is no matter of convergence: elements of half the side tear nearly twice as much
 (``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is torn, and comes loose by it, counts
@@ -41,8 +41,9 @@ import numpy as np
 
 from ngwear.accuracy import LEAST_ACROSS
 from ngwear.errors import NgwearError
+from ngwear.readings import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
 from ngwear.result_file import Snapshot
-from ngwear.results import EDGE, LEAK, TORN, Recorder, fingerprint
+from ngwear.results import TORN, Recorder, fingerprint
 from ngwear.run import DrawnHere, Result
 from ngwear.run import run as run_scene
 from ngwear.scene import Scene
@@ -51,18 +52,9 @@ from ngwear.workers import Worker
 
 COARSER, LEAST_COARSER = 2.0, 1.2
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
-DEPTH, LOST, PEAK = "maximum depth [-]", "area lost in all [-]", "peak pressure [-]"
-WHOLE = {
-    DEPTH: "maximum depth [mm]",
-    "worn area [-]": "area removed from the outline [mm^2]",
-    LOST: "area lost in all [mm^2]",  # where elements are lost
-}
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
-STROKE = {name: f"{name} [-]" for name in ("peak pressure", "contact width", "friction force")}
-LEAKS = "leak pressure [-]"  # of scenes that ask for it
 HERE = DrawnHere()
-PLACES = 17  # of the last half of the run, at which histories are read
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
@@ -91,37 +83,6 @@ def coarser(scene: Scene, factor: float = COARSER) -> Scene:
     return replace(scaled(scene, factor), save=replace(scene.save, strokes=(), vtk=False))
 
 
-def reading(rows: list[dict[str, Any]]) -> dict[str, dict[str, list[float]]]:
-    """What is read off along the last half of a run, by the name of its error: whole, and in each kind of stroke.
-
-    Strokes between those that were solved are interpolated; those looked at without wear are left out. The friction
-    force of a step is that of its mean way: where a law changes it, the history errs by more than its end.
-    """
-    solved = [row for row in rows if row["strokes in one solve [-]"] > 0 or row["stroke [-]"] == 0]
-    kinds = {kind: [row for row in solved if row["kind [-]"] == kind] for kind in dict.fromkeys(map(_kind, solved))}
-    steps = kinds[_kind(solved[-1])]  # where all strokes of a step have worn
-    places = np.linspace(0.5, 1.0, PLACES) * solved[-1]["stroke [-]"]
-
-    def history(column: str, of: list[dict[str, Any]]) -> list[float]:
-        return np.interp(places, [row["stroke [-]"] for row in of], [row[column] for row in of]).tolist()
-
-    out = {error: {column: history(column, steps)} for error, column in WHOLE.items() if column in steps[-1]}
-    for kind, mine in kinds.items():
-        for words, error in STROKE.items():
-            columns = [c for c in mine[-1] if f" {words} " in c and not c.endswith("[-]")]
-            out.setdefault(error, {}).update({f"{kind}: {c}": history(c, mine) for c in columns})
-        if LEAK in mine[-1]:
-            out.setdefault(LEAKS, {})[kind] = history(LEAK, mine)
-    return out
-
-
-def element_edge(rows: list[dict[str, Any]]) -> float:
-    """Mean edge of the elements in contact along the last half of a run [mm]; 0 if nothing touches there."""
-    late = [row for row in rows if row["stroke [-]"] >= 0.5 * rows[-1]["stroke [-]"]]
-    edges = [row[column] for row in late for column in row if column.endswith(EDGE) and row[column] > 0]
-    return float(np.mean(edges)) if edges else 0.0
-
-
 def coarser_by(mine: float, other: float) -> float:
     """How many times as long a companion's elements in contact are, of both element edges [mm].
 
@@ -129,10 +90,6 @@ def coarser_by(mine: float, other: float) -> float:
     their errors.
     """
     return float(np.clip(other / mine, LEAST_COARSER, COARSER)) if mine > 0 and other > 0 else COARSER
-
-
-def _kind(row: dict[str, Any]) -> str:
-    return row["kind [-]"]
 
 
 def stated(
@@ -163,7 +120,7 @@ def stated(
     steps = {name: embedded[name] for name in WHOLE if name in embedded}
     prescribed = {} if scene.wear.step == "jump" else steps
     for name, error in levels.items():
-        out[name] = error + folded + prescribed.get(name, 0.0)
+        out[name] = error + folded + prescribed.get(name, 0.0) + embedded.get(f"{name[:-4]} {BY_TIME_STEP}", 0.0)
     if DEPTH in levels and scene.wear.step == "jump":
         out[DEPTH] = max(out[DEPTH], steps.get(DEPTH, 0.0))
     for name in (LOST, DEPTH):

@@ -50,6 +50,12 @@ def refuse_in_scene(scene: Any) -> None:
             remedy = f"the friction of contact '{contact.name}' depends on speed: give the stroke's in mm/s"
             require(law is None or not law.depends_on_speed or known, f"{place}.speed", stroke.speed, remedy)
 
+    parts = scene.accuracy.parts
+    for contact in scene.contacts:
+        remedy = f"contact '{contact.name}' wears and may stick: whole strokes tell what of its slip lasts; take 1"
+        whole = parts == 1 or not (contact.wears and scene.may_stick(contact))
+        require(whole, "accuracy.parts", parts, remedy)
+
     rest = scene.program.rest
     remedy = "only rubber with memory changes while it sits: give [material.prony], or leave rest out"
     require(scene.prony is not None or math.isinf(rest), "program.rest", rest, remedy)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
 from numpy.typing import NDArray
@@ -52,6 +53,13 @@ class CycleMemory:
         relaxed = -self.ratios * np.expm1(-rest / self.times)
         self.relaxed = relaxed[:, None, None, None] * mounted  # q_i; replaced, never written to
         self.stresses = (mounted,) * len(self.durations)  # S_k, likewise
+
+    def in_halves(self) -> CycleMemory:
+        """The same for a cycle whose strokes are divided once more, each into two."""
+        halves = copy(self)
+        halves.durations = tuple(duration / 2 for duration in self.durations for _ in range(2))
+        halves.stresses = tuple(stress for stress in self.stresses for _ in range(2))
+        return halves
 
     def enter(self, term: StrokeMemory, plan: Plan, kind: int) -> None:
         """Prepare the term for the solve of the last stroke of a kind in a plan that starts at what is committed."""

@@ -193,12 +193,13 @@ def _memory_in_words(scene: Scene) -> str:
 def _memory_numbers(scene: Scene) -> dict[str, float]:
     if scene.prony is None:
         return {}
-    folding = scene.folding
+    folding, step = scene.folding, min(stroke.duration for stroke in scene.program.cycle)
     return {
         "G0/G of the arms kept [-]": folding.kept.instantaneous,
         "elastic part over long-term stiffness [-]": folding.stiffening,
         "largest error of stress by folding [-]": folding.bound,
-        "shortest stroke [s]": min(stroke.duration for stroke in scene.program.cycle),
+        "shortest stroke [s]": scene.program.parts * step,
+        "shortest time step [s]": step,
         "all strokes [s]": scene.program.duration,
     }
 

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ngwear.errors import require
+
+PART = ", part "  # in the name of a stroke that is one of several parts
+
+
+def whole_name(kind: str) -> str:
+    """Name of the stroke that a part belongs to, or of a stroke that is in one piece."""
+    return kind.partition(PART)[0]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,20 +58,48 @@ class Program:
     Parameters
     ----------
     cycle : tuple of Stroke
+        As they are solved: each may be a part of one that was given, see ``divided``.
     strokes : int
+        How many of these.
     rest : float
         How long the part sits mounted before the first stroke [s], > 0; for ever, until rubber with memory has relaxed,
         unless given.
+    parts : int
+        How many of these make a stroke that was given.
     """
 
     cycle: tuple[Stroke, ...]
     strokes: int
     rest: float = math.inf
+    parts: int = 1
 
     def __post_init__(self) -> None:
         require(bool(self.cycle), "program.stroke", self.cycle, "give at least one stroke")
         require(self.strokes >= 0, "program.strokes", self.strokes, "must be at least 0")
         require(self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without it the part relaxes fully")
+
+    def divided(self, parts: int) -> Program:
+        """The same with each stroke that was given in so many equal parts, one after the other."""
+        if parts == self.parts:
+            return self
+        whole = [replace(s, name=whole_name(s.name), travel=self.parts * s.travel) for s in self.cycle[:: self.parts]]
+        cycle = [
+            replace(stroke, name=f"{stroke.name}{PART}{k + 1} of {parts}" if parts > 1 else stroke.name, travel=way)
+            for stroke in whole
+            for way in (stroke.travel / parts,)
+            for k in range(parts)
+        ]
+        return replace(self, cycle=tuple(cycle), strokes=self.strokes // self.parts * parts, parts=parts)
+
+    def counted(self, strokes: int) -> float:
+        """Of so many strokes as they are solved, how many of those that were given are done; whole where it is."""
+        full, more = divmod(strokes, self.parts)
+        return full + more / self.parts if more else full
+
+    @property
+    def shortest_way(self) -> float:
+        """Of the strokes that were given, the shortest way [mm]."""
+        return self.parts * min(stroke.travel for stroke in self.cycle)
 
     def slid(self, strokes: int) -> float:
         """Sliding distance after so many strokes [mm]."""

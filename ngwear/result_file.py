@@ -20,11 +20,11 @@ Array = NDArray[np.float64]
 class Snapshot:
     """Outline and contact profiles at one solved stroke, as a run keeps them and as read from ``result.h5``.
 
-    ``time`` [s] is infinite where a stroke has no speed, and not yet known to the run; ``mesh`` is empty but at the
-    first stroke, ``elements`` but at the strokes that keep them.
+    ``time`` [s] is infinite where a stroke has no speed; ``mesh`` is empty but at the first stroke, ``elements`` but at
+    the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
     """
 
-    stroke: int
+    stroke: float
     kind: str
     outline: Array
     profiles: dict[str, dict[str, Array]]
@@ -104,7 +104,7 @@ def read_result(folder: Path | str) -> ResultFile:
                 parts = {k: {n: d[()] for n, d in g.items()} for k, g in group.items() if isinstance(g, h5py.Group)}
                 snapshots.append(
                     Snapshot(
-                        int(group.attrs["stroke"]),
+                        group.attrs["stroke"].item(),
                         str(group.attrs["kind"]),
                         group["outline [mm]"][()],
                         {k: v for k, v in parts.items() if k not in ("mesh", "elements")},

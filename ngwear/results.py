@@ -77,18 +77,19 @@ class Recorder:
             self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
         for number, report in enumerate(state.reports):
-            self.rows.append(self._row(state, report, wall))
+            self.rows.append(self.row(state, report, wall))
             mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else {}
             self.snapshots.append(self._snapshot(report, mesh))
 
-    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+    def row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+        """What ``series.csv`` says of a stroke of a state."""
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
         depth = depths(self.unworn, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
-            "stroke [-]": report.last_stroke,
+            "stroke [-]": scene.program.counted(report.last_stroke),
             "kind [-]": cycle[report.phase].name,
             "strokes in one solve [-]": report.repeats,  # 0: the outline as it is, without wear
             "sliding distance [mm]": scene.program.slid(report.last_stroke),
@@ -161,10 +162,11 @@ class Recorder:
             profiles[name]["counter-surface depth [mm]"] = counter.depth
         kind = self.scene.program.cycle[report.phase].name
         last, elements = report.last_stroke, {}
-        if report.cells is not None and last in (0, *self.scene.save.strokes, self.scene.program.strokes):
+        if report.cells is not None and last in (0, *self.scene.marks, self.scene.program.strokes):
             cells = report.cells
             elements = {"points [mm]": cells.points, "corners": cells.corners, "fate": cells.fate} | report.loaded
-        return Snapshot(last, kind, report.contour.points, profiles, mesh, elements)
+        stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
+        return Snapshot(stroke, kind, report.contour.points, profiles, mesh, elements, time)
 
     def summary(self, state: Any, status: str, message: str) -> dict[str, Any]:
         """The run in a few numbers."""
@@ -177,7 +179,7 @@ class Recorder:
             "status": status,
             "message": message,
             "scene": scene.name,
-            "strokes": state.strokes,
+            "strokes": scene.program.counted(state.strokes),
             "worn area [mm^2]": ledger.removed,
             "worn area by the law [mm^2]": ledger.worn,
             "maximum depth [mm]": float(depth.max()),
@@ -333,7 +335,7 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         for number, snapshot in enumerate(recorder.snapshots):
             group = strokes.create_group(f"{number:05d}")
             group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
-            group.attrs["time [s]"] = scene.program.elapsed(snapshot.stroke)
+            group.attrs["time [s]"] = snapshot.time
             group["outline [mm]"] = snapshot.outline
             for contact, profile in snapshot.profiles.items():
                 for name, values in profile.items():

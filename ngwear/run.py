@@ -137,16 +137,22 @@ def run(
                 bar.update(state, recorder)
         except (ConvergenceError, GeometryError, MeshError) as failure:
             error = failure
+    by_time_step: dict[str, float] = {}
+    if state is not None and state.memory is not None and error is None:
+        from ngwear.time_step import time_step_errors
+
+        by_time_step = time_step_errors(state)
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
     message = "all strokes done"
     if error is not None:
-        where = "the part cannot be mounted" if state is None else f"after stroke {state.strokes}"
-        message = f"{where}: {error}"
+        done = None if state is None else scene.program.counted(state.strokes)
+        message = f"{'the part cannot be mounted' if done is None else f'after stroke {done}'}: {error}"
     times = {"wall time [s]": round(recorder.wall, 3), "CPU time [s]": round(recorder.cpu, 3)}
     summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
+        summary["error estimates"] |= by_time_step
     if folder is not None:
         folder.finish(recorder, summary)
         if scene.save.vtk and state is not None:
@@ -219,11 +225,15 @@ class _Bar:
     def begin(self, state: State) -> None:
         if self._bar is not None:
             self._bar.close()
-        self._bar = self._make(total=self._scene.program.strokes, initial=state.strokes, desc="wear", unit="stroke")
+        total, done = self._done(self._scene.program.strokes), self._done(state.strokes)
+        self._bar = self._make(total=total, initial=done, desc="wear", unit="stroke")
+
+    def _done(self, strokes: int) -> float:
+        return self._scene.program.counted(strokes)
 
     def update(self, state: State, recorder: Recorder) -> None:
         row = recorder.rows[-1]
-        self._bar.update(state.strokes - self._bar.n)
+        self._bar.update(self._done(state.strokes) - self._bar.n)
         self._bar.set_postfix_str(
             f"depth {1e3 * row['maximum depth [mm]']:.1f} µm, {row['strokes in one solve [-]']} a solve"
         )

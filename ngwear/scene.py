@@ -170,6 +170,7 @@ class Scene:
     """Everything that a run needs.
 
     ``material`` is the long-term behaviour, ``prony`` the arms of its memory, if any, at the scene's temperature.
+    ``program`` is kept as it is solved, each stroke in ``accuracy.parts``.
 
     Raises
     ------
@@ -192,6 +193,7 @@ class Scene:
     save: Save = field(default_factory=Save)
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "program", self.program.divided(self.accuracy.parts))
         known = self.contour.edge_names
         users = [(f"contact '{c.name}'.edges", c.edges) for c in self.contacts]
         users += [(f"support[{i}].edges", s.edges) for i, s in enumerate(self.supports)]
@@ -274,7 +276,7 @@ class Scene:
         strokes = self.program.cycle
         if len({math.copysign(1.0, stroke.direction) for stroke in strokes}) == 1:
             return False, "the sliding never turns round"
-        carried, shortest = self.elastic_slip(contact), min(stroke.travel for stroke in strokes)
+        carried, shortest = self.elastic_slip(contact), self.program.shortest_way
         told = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
         return shortest < carried, told
 
@@ -286,6 +288,11 @@ class Scene:
         end = self.program.slid(self.program.strokes)
         mu = max(law.curve(stroke.speed).extremes(0.0, end)[1] for stroke in self.program.cycle)
         return 2 * mu * float(self.contour.points[:, 1].max() - self.contour.points[:, 1].min())
+
+    @property
+    def marks(self) -> tuple[int, ...]:
+        """Strokes as they are solved that a jump must not pass over."""
+        return tuple(self.program.parts * strokes for strokes in self.save.strokes)
 
     @property
     def worn_edges(self) -> tuple[str, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from copy import copy
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
@@ -159,6 +160,29 @@ class State:
     def __setstate__(self, saved: dict[str, Any]) -> None:
         self.__dict__.update(saved)
         self.stage = Stage(*saved["stage"], self.background)
+
+    def saved(self) -> dict[str, Any]:
+        """What ``take_back`` needs, should a step fail."""
+        return {
+            "stage": self.stage,
+            "contour": self.contour,
+            "phases": [replace(p) for p in self.phases],
+            "strokes": self.strokes,
+            "memory": copy(self.memory),
+            "fatigue": self.fatigue,
+            "strained": copy(self.strained),
+            "reports": self.reports,
+            "ledger": self.ledger.copy(),
+            "counters": self.counters,
+            "depths": self.depths,
+        }
+
+    def take_back(self, saved: dict[str, Any]) -> None:
+        """Take a step back, and count it as tried."""
+        self.work.retries += 1
+        contour = saved.pop("contour")
+        self.__dict__.update(saved)
+        self.stage.body.move_to(contour)
 
     @property
     def contour(self) -> Contour:

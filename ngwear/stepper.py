@@ -5,10 +5,8 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Callable
-from copy import copy
 from dataclasses import replace
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +25,7 @@ from ngwear.scene import Scene
 from ngwear.stage import Stage
 from ngwear.state import Phase, State, StrokeReport
 from ngwear.wear.control import JumpControl
-from ngwear.wear.cycles import Plan
+from ngwear.wear.cycles import Plan, planned
 from ngwear.wear.strokes import Strokes
 from ngwear.wearing import Wearing
 
@@ -170,71 +168,69 @@ class Stepper:
         """
         program, most = self.scene.program, math.inf
         while True:
-            goal = min([m for m in self.scene.save.strokes if m > state.strokes] + [program.strokes])
+            goal = min([m for m in self.scene.marks if m > state.strokes] + [program.strokes])
             left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
             wear = self.scene.wear
             cycles = {"each": 1, "fixed": min(wear.max_jump, left), "jump": state.control.share(left)}[wear.step]
             cycles = steady_cycles(self.scene, state.strokes, min(cycles, most))
-            saved = self._save(state)
+            saved = state.saved()
             try:
                 ratio = self._step(state, cycles)
             except (ConvergenceError, GeometryError, MeshError) as error:
                 if cycles == 1:
-                    self._restore(state, saved)
+                    state.take_back(saved)
                     raise
                 log.info("step of %d cycles failed (%s); trying half", cycles, error)
                 ratio = math.inf
             if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
-                self._restore(state, saved)
+                state.take_back(saved)
                 most = state.control.cut(cycles)
                 continue
             share = (state.strokes - saved["strokes"]) / program.strokes
             off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)
             state.control.update(ratio, cycles, off)
-            if state.strokes in (*self.scene.save.strokes, program.strokes):
+            if state.strokes in (*self.scene.marks, program.strokes):
                 self._look(state)
             return state
 
     def _look(self, state: State) -> None:
         """Report the strokes of the cycle other than the last one on the present outline; changes nothing else."""
-        latest, kinds = state.reports[-1].phase, len(self.scene.program.cycle)
-        for i, stroke in enumerate(self.scene.program.cycle):
-            if i == latest:
-                continue
-            saved = state.phases[i]
-            state.phases[i] = replace(saved, rate=None)
-            sliding, plan = self._strokes(i, state.strokes), self._plan(state.strokes, 1, state.strokes + kinds)
-            Wearing.begin(state, i, sliding)
-            iterations = self._solve_phase(state, i, stroke, sliding, plan=plan)
-            state.reports.insert(-1, self._observe(state, i, iterations, sliding))
-            state.phases[i] = saved
-        problem = state.stage.problem
+        latest = state.reports[-1].phase
+        for i in range(len(self.scene.program.cycle)):
+            if i != latest:
+                saved = state.phases[i]
+                state.reports.insert(-1, self._seen(state, i, self._next_cycle(state)))
+                state.phases[i] = saved
+        self.stand(state)
+
+    def look_ahead(self, state: State) -> list[StrokeReport]:
+        """Solve the next cycle's strokes on the present outline, in their order; state and memory are theirs then."""
+        plan, reports = self._next_cycle(state), []
+        for i, _ in plan:
+            reports.append(self._seen(state, i, plan))
+            if state.memory is not None:
+                state.memory.leave(state.stage.memory, i)
+        return reports
+
+    def stand(self, state: State) -> None:
+        """Let the part stand as at the end of the last stroke."""
+        problem, latest = state.stage.problem, state.reports[-1].phase
         problem.set_loads(state.stage.stroke_loads(self.scene.program.cycle[latest]))
         problem.state.vec.FV().NumPy()[:] = state.phases[latest].vector
         for term in problem.terms:
             term.refresh()
 
-    def _save(self, state: State) -> dict[str, Any]:
-        return {
-            "stage": state.stage,
-            "contour": state.contour,
-            "phases": [replace(p) for p in state.phases],
-            "strokes": state.strokes,
-            "memory": copy(state.memory),
-            "fatigue": state.fatigue,
-            "strained": copy(state.strained),
-            "reports": state.reports,
-            "ledger": state.ledger.copy(),
-            "counters": state.counters,
-            "depths": state.depths,
-        }
+    def _next_cycle(self, state: State) -> Plan:
+        kinds = len(self.scene.program.cycle)
+        return planned(kinds, state.strokes, 1, state.strokes + kinds)
 
-    def _restore(self, state: State, saved: dict[str, Any]) -> None:
-        """Take a step back, and count it as tried."""
-        state.work.retries += 1
-        contour = saved.pop("contour")
-        state.__dict__.update(saved)
-        state.stage.body.move_to(contour)
+    def _seen(self, state: State, index: int, plan: Plan) -> StrokeReport:
+        """A stroke of the cycle on the present outline, without wear."""
+        state.phases[index] = replace(state.phases[index], rate=None)
+        sliding = self._strokes(index, state.strokes)
+        Wearing.begin(state, index, sliding)
+        iterations = self._solve_phase(state, index, self.scene.program.cycle[index], sliding, plan=plan)
+        return self._observe(state, index, iterations, sliding)
 
     def _step(self, state: State, cycles: int) -> float:
         """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown).
@@ -242,7 +238,7 @@ class Stepper:
         It is infinite if something is torn too late, within a jump.
         """
         cycle, memory = self.scene.program.cycle, state.memory
-        plan = self._plan(state.strokes, cycles, self.scene.program.strokes)
+        plan = planned(len(cycle), state.strokes, cycles, self.scene.program.strokes)
         state.reports = []
         worn_before, error_before, known = state.ledger.worn, state.ledger.area_error, True
         begin = state.strokes
@@ -289,12 +285,6 @@ class Stepper:
         """Strokes of a kind, the first of which begins after ``done`` strokes of any."""
         program = self.scene.program
         return Strokes(program.slid(done), program.cycle[kind].travel, program.slid(len(program.cycle)), repeats)
-
-    def _plan(self, done: int, cycles: int, end: int) -> Plan:
-        """Strokes of a step that begins after ``done`` strokes: each kind in turn, and how often until ``end``."""
-        kinds = len(self.scene.program.cycle)
-        plan = [((done + k) % kinds, min(cycles, math.ceil((end - done - k) / kinds))) for k in range(kinds)]
-        return [(kind, repeats) for kind, repeats in plan if repeats > 0]
 
     def _solve_phase(
         self,

@@ -18,6 +18,7 @@ MESH = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # times the scene's element edge
 JUMPS = (16.0, 4.0, 1.0, 0.25, 0.0625)  # times its wear_error: the jump changes with the square root
 STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)
 BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # as far as the track leaves room
+PARTS = (1, 2, 4, 8)
 FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)
 HIGHER_ORDER = 0.25  # of what order 1 differs from order 2 by: order 2 errs less, by 1/4 and 1/200 on seal and shaft
 EACH_BEGINS = 0.02  # wear_error from which jumps are coarsened in a scene that solves each stroke
@@ -33,7 +34,11 @@ class Knob:
 
 
 def knobs(scene: AnyScene) -> tuple[Knob, ...]:
-    """The knobs that the scene's solver really has, the mesh first."""
+    """The knobs that the scene's solver really has, the mesh first.
+
+    Increments of the load are none: where all of a contact slides, an equilibrium does not depend on the way to it, and
+    where friction may stick, a stroke is one increment. Only memory has a time step.
+    """
     if isinstance(scene, PinScene):
         return _pin_knobs(scene)
     found = [_mesh(scene)]
@@ -42,6 +47,8 @@ def knobs(scene: AnyScene) -> tuple[Knob, ...]:
     if scene.deactivation is None:
         found.append(_stress(scene))
     found += _orders(scene)
+    if scene.arms is not None:
+        found.append(_time_step(scene))
     if scene.prony is not None:
         found += _arms(scene.accuracy.folding_error, lambda tolerance: _foldings_of_wear(scene, tolerance))
     return tuple(found)
@@ -178,6 +185,21 @@ def _orders(scene: Scene) -> list[Knob]:
         return replace(scene, accuracy=replace(old, order=order, stress_error=old.stress_error ** (order / old.order)))
 
     return [Knob(ladder, apply)]
+
+
+def _time_step(scene: Scene) -> Knob:
+    """Parts of a stroke, each with a solve of its own; the value is one over them."""
+    parts = sorted({*PARTS, scene.accuracy.parts})
+    ladder = Ladder(
+        name="time step",
+        column="time step over stroke [-]",
+        values=tuple(1 / n for n in parts),
+        labels=tuple(f"{n} part{'' if n == 1 else 's'} a stroke" for n in parts),
+        own=parts.index(scene.accuracy.parts),
+        growth=0.9,
+        smooth=False,
+    )
+    return Knob(ladder, lambda s, step: replace(s, accuracy=replace(s.accuracy, parts=round(1 / step))))
 
 
 def _refolded(scene: Scene, tolerance: float) -> Scene:

@@ -93,7 +93,7 @@ def _stick_slip(scene: Scene) -> Verdict:
     if not frictions:
         return Verdict(words="no contact has friction", matters=False)
     slip = max(scene.elastic_slip(c) for c in frictions)
-    shortest = min(stroke.travel for stroke in scene.program.cycle)
+    shortest = scene.program.shortest_way
     turns = len({math.copysign(1.0, stroke.direction) for stroke in scene.program.cycle}) > 1
     numbers = {"elastic slip at most over shortest stroke [-]": slip / shortest}
     if not turns:

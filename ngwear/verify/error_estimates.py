@@ -31,7 +31,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from ngwear.companion import COARSER, coarser, reading, scaled, stated
+from ngwear.companion import COARSER, coarser, scaled, stated
+from ngwear.readings import reading
 from ngwear.run import Result
 from ngwear.run import run as run_scene
 from ngwear.run_pin import estimates as pin_estimates

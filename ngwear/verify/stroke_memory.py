@@ -7,7 +7,8 @@ before the first stroke.
 
 Resolved: each reversal at once, then 24 growing steps. Compared are the means over each of the first six strokes of
 the cylinder's force and of the highest contact pressure. With a pressed side strains do not stand still during a
-stroke: that is the error.
+stroke: that is the error. What a run of the same scene states of it (``ngwear.time_step``) is held against the strokes
+resolved in time, and its error with strokes in four parts against that with strokes in one.
 
 Jumps of 1, 3, 9 and 27 cycles, growing as wear's do, against the 40 one by one: force and pressure of the last
 strokes. A jump takes the other strokes' strains as they were solved last; while the arms still settle, that is its
@@ -16,11 +17,14 @@ error.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear import readings
+from ngwear.accuracy import Accuracy
 from ngwear.cycle_memory import CycleMemory
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
@@ -36,7 +40,11 @@ from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
 from ngwear.materials import MooneyRivlin, PronySeries
+from ngwear.program import Program, Stroke
+from ngwear.run import run as run_scene
+from ngwear.scene import ContactSpec, FluidSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Cylinder
+from ngwear.time_step import ahead
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
 
@@ -47,6 +55,7 @@ ARMS = PronySeries((0.8, 0.6, 0.4), (0.1, 1.0, 10.0))
 HALF, HEIGHT, RADIUS, DEPTH, FRICTION, PRESSURE = 1.5, 1.5, 2.0, 0.2, 0.2, 0.3
 DURATION, STROKES, SUBSTEPS, AT_ONCE = 0.9, 6, 24, 1e-6
 JUMPS = (1, 3, 9, 27)
+WAY = 10.0  # mm
 
 
 def block() -> Body:
@@ -78,12 +87,12 @@ class Rig:
         return np.array([abs(self.contact.force()[1]), self.contact.profile().pressure.max()])
 
 
-def resolved() -> Array:
+def resolved(body: Body, strokes: int) -> Array:
     """Means over each stroke, shape (strokes, 2)."""
-    rig = Rig(block(), Viscosity(RUBBER, ARMS))
+    rig = Rig(body, Viscosity(RUBBER, ARMS))
     times = DURATION * np.concatenate([[0.0], np.geomspace(2e-3, 1.0, SUBSTEPS)])
     means = []
-    for stroke in range(STROKES):
+    for stroke in range(strokes):
         advance(rig.problem, rig.loads(stroke % 2), StepOptions(first=0.5), duration=AT_ONCE)
         found = [rig.seen()]
         for start, end in pairwise(times):
@@ -119,7 +128,7 @@ class Strokes:
 def run() -> list[Check]:
     """Strokes against time, and a jump against strokes."""
     clock = Stopwatch()
-    reference = resolved()
+    reference = resolved(block(), STROKES)
     one_by_one = Strokes()
     found = np.concatenate([one_by_one.step([(stroke % 2, 1)]) for stroke in range(STROKES)])
     relaxed = Strokes().rig.seen()
@@ -141,4 +150,43 @@ def run() -> list[Check]:
         leapt = jump.step([(0, cycles), (1, cycles)])
     off = float(np.abs(leapt / last - 1).max())
     checks.append(Check(CASE, f"{sum(JUMPS)} cycles in jumps against one by one [-]", off, 0.0, 0.01, clock.seconds))
+    return checks + time_step()
+
+
+def scene(parts: int) -> Scene:
+    """The block as a scene, its strokes in parts."""
+    cylinder = Cylinder(centre=(0.0, HEIGHT + RADIUS - DEPTH), radius=RADIUS)
+    to = Stroke(name="to", travel=WAY, direction=-1.0, speed=WAY / DURATION)
+    return Scene(
+        name="block under a cylinder",
+        contour=Contour.rectangle((-HALF, HALF), (0.0, HEIGHT)),
+        material=RUBBER,
+        prony=ARMS,
+        contacts=(ContactSpec(name="roller", edges=("top",), surface=cylinder, friction=FRICTION, refine=True),),
+        program=Program(cycle=(to, replace(to, name="fro", direction=1.0, pressure=PRESSURE)), strokes=STROKES),
+        fluid=FluidSpec(edges=("right",), inlet=("right",)),
+        supports=(SupportSpec(edges=("bottom",)),),
+        accuracy=Accuracy(patch=0.06, coarse=0.3, mounting=0.06, parts=parts),
+        wear=Wear(step="each"),
+    )
+
+
+def time_step() -> list[Check]:
+    """What runs state of their time step against the next two strokes resolved in time, on the same mesh."""
+    watch, checks, off = Stopwatch(), [], {}
+    for parts in (1, 4):
+        result = run_scene(scene(parts), figures=False)
+        exact = resolved(result.state.stage.body, STROKES + 2)[-2:, 0]
+        forces = [abs(report.forces["roller"][1]) for report in ahead(result.state).reports]
+        force = np.mean(np.reshape(forces, (2, parts)), axis=1)
+        off[parts] = float(np.linalg.norm(force - exact) / np.linalg.norm(exact))
+        said = result.summary["error estimates"][f"{readings.FRICTION[:-4]} {readings.BY_TIME_STEP}"]
+        words = (
+            f"{parts} part{'' if parts == 1 else 's'} a stroke: stated over true error of the force by its time step"
+        )
+        for limit, bound in ((0.5, "above"), (3.0, "below")):
+            label = f"{words}, {bound} {limit:g} [-]"
+            checks.append(Check(CASE, label, said / off[parts], limit, 0.0, watch.seconds, bound=bound))
+    label = "error by the time step, 4 parts a stroke over 1 [-]"
+    checks.append(Check(CASE, label, off[4] / off[1], 0.5, 0.0, watch.seconds, bound="below"))
     return checks

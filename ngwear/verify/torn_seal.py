@@ -25,9 +25,9 @@ from typing import Any
 
 import numpy as np
 
-from ngwear.companion import reading
 from ngwear.errors import NgwearError
 from ngwear.program import Stroke
+from ngwear.readings import reading
 from ngwear.results import BOOK
 from ngwear.run import Result
 from ngwear.run import run as run_scene

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,12 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 Plan = Sequence[tuple[int, int]]  # (kind of stroke, how many of its kind), in the order in which they follow each other
+
+
+def planned(kinds: int, done: int, cycles: int, end: int) -> Plan:
+    """Strokes of a step of so many cycles after ``done`` strokes: each kind in turn, how often, to ``end`` at most."""
+    plan = [((done + k) % kinds, min(cycles, math.ceil((end - done - k) / kinds))) for k in range(kinds)]
+    return [(kind, repeats) for kind, repeats in plan if repeats > 0]
 
 
 @dataclass(frozen=True)

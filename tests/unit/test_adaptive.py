@@ -7,8 +7,9 @@ from ngwear import adaptive
 from ngwear.accuracy import Accuracy
 from ngwear.adaptive import ACROSS, LEVELS, at_level, first_across, next_across, run_to_error
 from ngwear.cli import main
-from ngwear.companion import COARSEST, DEPTH, FILE
+from ngwear.companion import COARSEST, FILE
 from ngwear.errors import ResultError, SceneError
+from ngwear.readings import DEPTH
 from ngwear.scene import Wear
 from ngwear.stepper import Stepper
 from ngwear.verify.no_loss import scene

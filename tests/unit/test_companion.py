@@ -9,21 +9,16 @@ from ngwear import companion
 from ngwear.companion import (
     COARSER,
     COARSEST,
-    DEPTH,
     FILE,
     LEAST_COARSER,
-    LOST,
-    PEAK,
-    PLACES,
     coarser,
     coarser_by,
-    element_edge,
-    reading,
     run_stated,
     stated,
 )
 from ngwear.materials import PronySeries
 from ngwear.plots import wear
+from ngwear.readings import DEPTH, LOST, PEAK, PLACES, element_edge, reading
 from ngwear.result_file import read_result
 from ngwear.results import TORN, fingerprint
 from ngwear.run import run

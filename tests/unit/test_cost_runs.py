@@ -75,7 +75,7 @@ def test_only_knobs_that_the_scene_calls_for(sheet, seal, tmp_path, write_sheet)
     assert names(sheet) == elastic
     assert names(seal) == elastic
     filled = read_scene(write_sheet(tmp_path / "filled", *REMEMBERS))
-    assert names(filled) == [*elastic, "arms of the memory"]
+    assert names(filled) == [*elastic, "time step", "arms of the memory"]
     (contact,) = sheet.contacts
     unworn = replace(sheet, contacts=(replace(contact, specific_wear_rate=0.0),))
     assert "jumps over strokes" not in names(unworn)

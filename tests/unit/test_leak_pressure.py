@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ngwear.adaptive import at_level
-from ngwear.companion import LEAKS, reading, stated
+from ngwear.companion import stated
 from ngwear.cost import cost
 from ngwear.cost_runs import wear_values
 from ngwear.effects.contact import Contact
@@ -20,6 +20,7 @@ from ngwear.geometry.contour import Contour
 from ngwear.input.tables import record
 from ngwear.plots.wear import history_figure
 from ngwear.program import Program, Stroke
+from ngwear.readings import LEAKS, reading
 from ngwear.result_file import read_result
 from ngwear.results import LEAK, Recorder
 from ngwear.run import run
@@ -83,7 +84,7 @@ def test_series_summary_and_study_tell_what_the_seal_holds(block):
 def test_its_error_is_stated_and_drawn(block):
     folder, result = block
     read = reading(result.recorder.rows)
-    assert set(read[LEAKS]) == {f"{p:g} MPa" for p in PRESSURES}
+    assert set(read[LEAKS]) == {f"{p:g} MPa: {LEAK}" for p in PRESSURES}
     other = {**read, LEAKS: {kind: (1.02 * np.array(values)).tolist() for kind, values in read[LEAKS].items()}}
     errors = stated(scene(), result.summary["error estimates"], read, other)
     assert errors[LEAKS] == pytest.approx(0.02)

@@ -91,14 +91,14 @@ def test_where_nodes_cannot_follow_the_strokes_to_come_leave_air(seal, monkeypat
     outward, inward = (stepper._strokes(kind, state.strokes, cycles) for kind in (0, 1))
 
     def peak(later, *, follows):
-        saved = stepper._save(state)
+        saved = state.saved()
         with monkeypatch.context() as patch:
             if not follows:
                 patch.setattr(state.stage.body, "move_to", _refuse)
             Wearing.begin(state, 0, outward, later=later)
         stepper._solve_phase(state, 0, coarse.program.cycle[0], outward)
         found = state.stage.contacts["rod"].profile().pressure.max()
-        stepper._restore(state, saved)
+        state.take_back(saved)
         return found
 
     whole = peak({1: inward}, follows=True)
