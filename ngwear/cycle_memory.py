@@ -31,7 +31,7 @@ class CycleMemory:
     others' S_j as they were solved last.
 
     Neglected: that strains creep during a stroke, under the fluid's pressure above all (``ngwear verify
-    stroke_memory`` measures it).
+    stroke_memory`` measures it, a run states it by ``ngwear.time_step``, and ``Accuracy.parts`` makes it less).
 
     Parameters
     ----------

@@ -219,9 +219,7 @@ def _film(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
         f"flooded with oil of {1e6 * oil:g} Pa s (Herrebrugh, soft line contact; {1e3 * assumed.roughness:g} µm rough)"
     )
     if strip.stroke.speed is None:
-        words = (
-            f"cannot be told: {UNSAID}. {grounds[0].upper()}{grounds[1:]}, a film would carry from {starts:.3g} mm/s on"
-        )
+        words = f"{UNSAID}. {grounds[0].upper()}{grounds[1:]}, a film would carry from {starts:.3g} mm/s on"
         return Verdict(words=words, matters=None, numbers=_finite(numbers))
     found = ratio(strip.stroke.speed)
     numbers |= {
