@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass, replace
 
 from ngwear.errors import require
 
-PART = ", part "  # in the name of a stroke that is one of several parts
+PART = re.compile(r", part \d+ of \d+$")  # of a stroke's name
 
 
 def whole_name(kind: str) -> str:
     """Name of the stroke that a part belongs to, or of a stroke that is in one piece."""
-    return kind.partition(PART)[0]
+    return PART.sub("", kind)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +85,7 @@ class Program:
             return self
         whole = [replace(s, name=whole_name(s.name), travel=self.parts * s.travel) for s in self.cycle[:: self.parts]]
         cycle = [
-            replace(stroke, name=f"{stroke.name}{PART}{k + 1} of {parts}" if parts > 1 else stroke.name, travel=way)
+            replace(stroke, name=f"{stroke.name}, part {k + 1} of {parts}" if parts > 1 else stroke.name, travel=way)
             for stroke in whole
             for way in (stroke.travel / parts,)
             for k in range(parts)

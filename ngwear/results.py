@@ -77,12 +77,11 @@ class Recorder:
             self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
         for number, report in enumerate(state.reports):
-            self.rows.append(self.row(state, report, wall))
+            self.rows.append(self._row(state, report, wall))
             mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else {}
             self.snapshots.append(self._snapshot(report, mesh))
 
-    def row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
-        """What ``series.csv`` says of a stroke of a state."""
+    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)

@@ -137,11 +137,7 @@ def run(
                 bar.update(state, recorder)
         except (ConvergenceError, GeometryError, MeshError) as failure:
             error = failure
-    by_time_step: dict[str, float] = {}
-    if state is not None and state.memory is not None and error is None:
-        from ngwear.time_step import time_step_errors
-
-        by_time_step = time_step_errors(state)
+    by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
     message = "all strokes done"
@@ -153,6 +149,7 @@ def run(
     if state is not None:
         summary = recorder.summary(state, status, message)
         summary["error estimates"] |= by_time_step
+        summary["warnings"] += warnings
     if folder is not None:
         folder.finish(recorder, summary)
         if scene.save.vtk and state is not None:
@@ -176,6 +173,18 @@ def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, 
     recorder.add(state, wall=recorder.wall)
     if folder is not None:
         folder.save(state, recorder)
+
+
+def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
+    """Errors by the time step of rubber with memory, and a warning if they are not known."""
+    if state.memory is None:
+        return {}, []
+    from ngwear.time_step import time_step_errors
+
+    try:
+        return time_step_errors(state), []
+    except ConvergenceError as error:
+        return {}, [f"strokes in two parts gave up ({error}); the error of the time step is not known"]
 
 
 def _write_vtk(path: Path, state: State) -> None:

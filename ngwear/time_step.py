@@ -36,9 +36,16 @@ def time_step_errors(state: State) -> dict[str, float]:
     ----------
     state : State
         Of a run with memory, after its last stroke.
+
+    Raises
+    ------
+    ConvergenceError
+        If a stroke of that cycle has no equilibrium.
     """
-    whole, halves = ahead(state), ahead(in_halves(state))  # from the same start
-    Stepper(state.stage.scene).stand(state)
+    try:
+        whole, halves = ahead(state), ahead(in_halves(state))  # from the same start
+    finally:
+        Stepper(state.stage.scene).stand(state)
     deepest = _deepest(whole)
     mine, other = (_read(seen, deepest) for seen in (whole, halves))
     return {f"{name[:-4]} {BY_TIME_STEP}": REMAINS * error for name, error in relative_errors(mine, other).items()}
@@ -85,10 +92,7 @@ def _read(state: State, deepest: tuple[str, slice] | None) -> Read:
     for kind in dict.fromkeys(whole_name(stroke.name) for stroke in cycle):
         mine = [report for report in state.reports if whole_name(cycle[report.phase].name) == kind]
         for name in mine[0].contacts:
-            pressures = [
-                np.average(p.pressure, weights=p.load) for p in (r.contacts[name] for r in mine) if p.load.any()
-            ]
-            out.setdefault(PEAK, {})[f"{kind}: {name}"] = np.sum(pressures) / len(mine)
+            out.setdefault(PEAK, {})[f"{kind}: {name}"] = np.mean([_mean_pressure(r.contacts[name]) for r in mine])
         for name in (name for name in mine[0].forces if name.endswith("friction")):
             out.setdefault(FRICTION, {})[f"{kind}: {name}"] = np.mean([report.forces[name] for report in mine], axis=0)
     for name in (spec.name for spec in scene.contacts if spec.wears):
