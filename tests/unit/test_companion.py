@@ -13,6 +13,7 @@ from ngwear.companion import (
     LEAST_COARSER,
     coarser,
     coarser_by,
+    growth,
     run_stated,
     stated,
 )
@@ -128,6 +129,22 @@ def test_all_that_is_torn_counts_as_error_of_the_area_lost_and_of_the_depth():
     assert found[LOST] == pytest.approx(0.04 + 0.1)
     assert found["area lost in all by mesh and wear steps [-]"] == pytest.approx(0.04)
     assert found[DEPTH] == pytest.approx(0.1)
+
+
+@pytest.mark.parametrize(
+    ("depth", "area", "power"),
+    [
+        ([1.0, 2.0, 4.0], [1.0, 2.0**1.5, 8.0], 2 / 3),
+        ([1.0, 2.0], [1.0, 4.0], 0.5),
+        ([1.0, 4.0], [1.0, 2.0], 1.0),
+        ([1.0, 1.0], [1.0, 2.0], 1.0),
+        ([0.0, 1.0], [0.0, 1.0], 1.0),
+    ],
+)
+def test_depths_grow_by_a_power_of_the_area(depth, area, power):
+    mine = {DEPTH: {"d": depth}, LOST: {"a": area}}
+    assert growth(mine) == pytest.approx(power)
+    assert stated(scene("implicit"), {TORN: 0.1}, mine, mine)[DEPTH] == pytest.approx(0.1 * power)
 
 
 def test_where_elements_are_lost_peaks_err_by_no_less_than_their_last_difference():
