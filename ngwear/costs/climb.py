@@ -41,6 +41,8 @@ class Choice:
 def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measure) -> Study:
     """Climb the ladders from coarse to fine, the cheapest rung of all first, as far as the budget reaches.
 
+    Of a ladder whose coarsest rung is the scene's own, nothing is known until a finer one has been run: it goes first.
+
     Parameters
     ----------
     ladders : tuple of Ladder
@@ -73,7 +75,7 @@ def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measur
                 waiting[k] = rung, study.next_seconds(k, rung)
         if not waiting:
             break
-        k = min(waiting, key=lambda k: (waiting[k][1], k))
+        k = min(waiting, key=lambda k: (not _tells_nothing(study, k), waiting[k][1], k))
         rung, seconds = waiting[k]
         setting = rung_of(study.base, k, rung)
         if not seconds <= ladder_budget - study.spent:
@@ -137,6 +139,11 @@ def _next_rung(study: Study, k: int) -> int | None:
     if ladder.most_solves and 0 <= finest < left[0] and rungs[finest].solves >= ladder.most_solves:
         return left[-1]  # finer tolerances of the jump have no jumps left to shorten
     return left[0]
+
+
+def _tells_nothing(study: Study, k: int) -> bool:
+    """Whether all that there is of a ladder is the base."""
+    return study.ladders[k].own == 0 and len(study.rungs(k)) < 2
 
 
 def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:

@@ -8,8 +8,8 @@
   area on the finer mesh has a bound that was asked for (10 %). For the rest nobody has derived a reference: the bounds
   are above what was measured, and say what the scene's choices are worth.
 - What the hour states of its own errors (``error_estimates``), over what it differs by from the finer elements. What is
-  torn grows with every finer mesh, and no coarser one tells: all of it counts as error of the area lost, and of the depth
-  as far as that grows with the area.
+  torn grows with every finer mesh, and no coarser one tells: all of it counts as error of the area lost, and of the
+  depth as far as that grows with the area.
   The outward peak stands at the end of the worn flat, over few elements, and grows with every finer mesh.
 
 Units: mm, N, MPa. Its runs go two at a time on two cores and take 4,000 to 10,400 CPU s together, half of them the

@@ -215,6 +215,24 @@ def test_base_on_a_coarser_mesh_is_told():
     )
 
 
+def test_a_ladder_that_begins_with_the_scenes_own_rung_is_climbed_first():
+    """Else a partial budget would tell nothing: all finer rungs are dearer than coarse ones of other ladders."""
+    step = ladder("time step", (1.0, 0.5, 0.25), 0)
+    fake = Fake()
+
+    def with_steps(setting, left):
+        run = fake(setting[:2], left)
+        times = step.values[setting[2]]
+        values = {DEPTH: run.values[DEPTH] + 0.01 * times}
+        return replace(run, wall=run.wall / times, cpu=run.cpu / times, values=values)
+
+    study = climb((*LADDERS, step), DEPTH, 9.0, with_steps)
+    assert list(study.runs)[2] == (*study.base[:2], 1), "after the scene on two meshes"
+    assert len(study.rungs(2)) == 2
+    assert study.left_out
+    assert math.isfinite(study.predicted_error(study.base, DEPTH))
+
+
 def test_same_measurements_same_plan():
     first, again = study_of(12.0), study_of(12.0)
     assert first[2].asked == again[2].asked
