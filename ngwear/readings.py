@@ -43,18 +43,10 @@ def reading(rows: Rows) -> dict[str, dict[str, list[float]]]:
     out = {error: {column: history(column, steps).tolist()} for error, column in WHOLE.items() if column in steps[-1]}
     for kind in dict.fromkeys(map(whole_name, parts)):
         mine = [of for part, of in parts.items() if whole_name(part) == kind]
-        for error, column in of_stroke(mine[-1][-1]):
+        for error, column in _of_stroke(mine[-1][-1]):
             mean = np.mean([history(column, of) for of in mine], axis=0)
             out.setdefault(error, {})[f"{kind}: {column}"] = mean.tolist()
     return out
-
-
-def of_stroke(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """Name of the error, and column, of all that is read in a single stroke."""
-    for words, error in STROKE.items():
-        yield from ((error, c) for c in row if f" {words} " in c and not c.endswith("[-]"))
-    if LEAK in row:
-        yield LEAKS, LEAK
 
 
 def element_edge(rows: Rows) -> float:
@@ -62,6 +54,14 @@ def element_edge(rows: Rows) -> float:
     late = [row for row in rows if row["stroke [-]"] >= 0.5 * rows[-1]["stroke [-]"]]
     edges = [row[column] for row in late for column in row if column.endswith(EDGE) and row[column] > 0]
     return float(np.mean(edges)) if edges else 0.0
+
+
+def _of_stroke(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Name of the error, and column, of all that is read in a single stroke."""
+    for words, error in STROKE.items():
+        yield from ((error, c) for c in row if f" {words} " in c and not c.endswith("[-]"))
+    if LEAK in row:
+        yield LEAKS, LEAK
 
 
 def _part(row: dict[str, Any]) -> str:

@@ -9,9 +9,11 @@ from concurrent.futures import Executor, Future
 from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from conftest import REMEMBERS
 
+from ngwear import stepper
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.cost import CSV, JSON, PNG, RUNS, cost
 from ngwear.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
@@ -21,6 +23,7 @@ from ngwear.costs.ladder import STOPPED
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.scenefile import read_scene
 from ngwear.sweep import sweep
+from ngwear.verify.rod_seal import shipped_scene
 from ngwear.workers import one_thread_pool
 
 JUMPS = (("strokes = 4", "strokes = 12"), ('step = "each"', 'step = "jump"'))
@@ -81,6 +84,26 @@ def test_only_knobs_that_the_scene_calls_for(sheet, seal, tmp_path, write_sheet)
     assert "jumps over strokes" not in names(unworn)
     short = replace(sheet, program=replace(sheet.program, strokes=2))
     assert "jumps over strokes" not in names(short)
+
+
+@pytest.mark.slow
+def test_increments_of_the_load_are_no_knob(monkeypatch):
+    """Of the torn seal, whose clamps stick: what they carry, and the peak, after strokes in increments of a quarter."""
+
+    def shorter(problem, target, options, real=stepper.advance, **how):
+        return real(problem, target, replace(options, first=0.25 * options.first, easy=2), **how)
+
+    scene, work, seen = shipped_scene(folder="torn_seal"), [], []
+    for advance in (stepper.advance, shorter):
+        monkeypatch.setattr(stepper, "advance", advance)
+        state = stepper.Stepper(scene).start()
+        work.append(state.work.solves)
+        forces = [np.concatenate([*report.forces.values()]) for report in state.reports]
+        seen.append((forces, [report.contacts["rod"].pressure.max() for report in state.reports]))
+    assert work[1] > 1.5 * work[0]
+    (forces, peaks), (others, other_peaks) = seen
+    assert np.abs(np.subtract(others, forces)).max() < 1e-5 * np.abs(forces).max()
+    assert other_peaks == pytest.approx(peaks, rel=1e-6)
 
 
 def test_rungs_change_their_knob_and_nothing_else(seal):
