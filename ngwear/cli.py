@@ -15,7 +15,12 @@ from ngwear import __version__
 from ngwear.errors import NgwearError, ResultError, SceneError
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
-BESIDE = ("ngwear.companion", "ngwear.plots.wear", "h5py", "matplotlib.backends.backend_agg")  # a run's second process
+BESIDE = (
+    "ngwear.error_estimates.companion",
+    "ngwear.plots.wear",
+    "h5py",
+    "matplotlib.backends.backend_agg",
+)  # a run's second process
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -103,32 +108,32 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    from ngwear.workers import Worker
+    from ngwear.parallel.workers import Worker
 
     worker = None if options.alone else Worker(*BESIDE)  # loads while this process does
-    from ngwear.files import COMPLETED
-    from ngwear.scenefile import read_scene
-    from ngwear.sliding.scene import PinScene
+    from ngwear.files.files import COMPLETED
+    from ngwear.scene.pin_scene import PinScene
+    from ngwear.scene.scenefile import read_scene
 
     scene = read_scene(options.scene)
     if options.accuracy is not None:
         scene = _with_accuracy(scene, options.accuracy)
     how = {"out": options.out, "resume": options.resume, "progress": not options.quiet}
     if isinstance(scene, PinScene):
-        from ngwear.run_pin import run_pin
+        from ngwear.sliding.run_pin import run_pin
 
         if worker is not None:
             worker.end()
         summary = run_pin(scene, **how)
     elif options.alone:
-        from ngwear.run import run
+        from ngwear.loop.run import run
 
         summary = run(scene, **how, throw=False).summary
     else:
-        from ngwear.companion import run_stated
+        from ngwear.error_estimates.companion import run_stated
 
         if scene.accuracy.error is not None:
-            from ngwear.adaptive import run_to_error as run_stated
+            from ngwear.error_estimates.adaptive import run_to_error as run_stated
         summary = run_stated(scene, **how, throw=False, worker=worker).summary
     if summary["status"] != COMPLETED:
         print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
@@ -144,8 +149,8 @@ def _run(options: argparse.Namespace) -> int:
 
 def _with_accuracy(scene: Any, asked: str) -> Any:
     """The scene by a preset, or to an error."""
-    from ngwear.accuracy import PRESETS, Accuracy
-    from ngwear.sliding.scene import PinScene
+    from ngwear.scene.accuracy import PRESETS, Accuracy
+    from ngwear.scene.pin_scene import PinScene
 
     if isinstance(scene, PinScene):
         raise SceneError("--accuracy", asked, "is for wear: the meshes of a pin are in its scene's [accuracy]")
@@ -191,18 +196,18 @@ def _verify(options: argparse.Namespace) -> int:
 def _explain(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
-    from ngwear.absent import Assumed
-    from ngwear.explaining.text import lines
-    from ngwear.scenefile import read_scene
-    from ngwear.sliding.scene import PinScene
+    from ngwear.explanation.assumed import Assumed
+    from ngwear.explanation.text import lines
+    from ngwear.scene.pin_scene import PinScene
+    from ngwear.scene.scenefile import read_scene
 
     scene, assumed = read_scene(options.scene), Assumed().replaced(options.assume)
     if isinstance(scene, PinScene):
-        from ngwear.sliding.explain import explain_pin
+        from ngwear.explanation.explain_pin import explain_pin
 
         found = explain_pin(scene, assumed=assumed)
     else:
-        from ngwear.explain import explain
+        from ngwear.explanation.explain import explain
 
         shown = sys.stderr.isatty()
         with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
@@ -212,8 +217,8 @@ def _explain(options: argparse.Namespace) -> int:
 
 
 def _cost(options: argparse.Namespace) -> int:
-    from ngwear.cost import cost
-    from ngwear.scenefile import read_scene
+    from ngwear.error_estimates.cost import cost
+    from ngwear.scene.scenefile import read_scene
 
     scene = read_scene(options.scene)
     found = cost(scene, budget=options.budget, folder=options.out, progress=not options.quiet)

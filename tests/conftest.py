@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ngwear.geometry.contour import Contour
-from ngwear.scenefile import read_scene
+from ngwear.scene.scenefile import read_scene
 
 TESTS = Path(__file__).parent
 FOLDERS = ("unit", "verification", "stability", "regression", "benchmarks")
@@ -152,7 +152,7 @@ def seal():
 
 @pytest.fixture(scope="session")
 def _finished_once(tmp_path_factory):
-    from ngwear.run import run
+    from ngwear.loop.run import run
 
     folder = tmp_path_factory.mktemp("sheet")
     run(read_scene(_write_sheet(folder)), out=folder / "out")

@@ -8,9 +8,9 @@ import warnings
 from dataclasses import replace
 from pathlib import Path
 
+from ngwear.loop.run import run
 from ngwear.plots.schemes import draw_schemes
-from ngwear.run import run
-from ngwear.scenefile import read_scene
+from ngwear.scene.scenefile import read_scene
 
 HERE = Path(__file__).parent
 MESHES = (0.1, 0.05, 0.025)

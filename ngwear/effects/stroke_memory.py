@@ -11,7 +11,7 @@ from ngwear.materials import Hyperelastic, PronySeries
 
 
 class StrokeMemory(Memory):
-    """Mean overstress of the arms over one stroke, ``share S + h`` (see ``ngwear.cycle_memory``).
+    """Mean overstress of the arms over one stroke, ``share S + h`` (see ``ngwear.loop.cycle_memory``).
 
     Takes no part in time steps: what a solve needs is told by ``hold``.
 

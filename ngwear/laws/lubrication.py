@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ngwear.columns import read_columns
+from ngwear.files.columns import read_columns
 from ngwear.laws.base import FrictionLaw
 from ngwear.laws.table import check_table
 

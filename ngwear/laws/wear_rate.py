@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.columns import read_columns
+from ngwear.files.columns import read_columns
 from ngwear.laws.base import Curve
 from ngwear.laws.table import area_below, check_table
 

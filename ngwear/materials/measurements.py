@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.columns import read_columns
 from ngwear.errors import SceneError
+from ngwear.files.columns import read_columns
 
 Array = NDArray[np.float64]
 SOFTEST, STIFFEST = 0.05, 5e3  # MPa: from a gel to a glass; rubber tables outside are in another unit

@@ -13,7 +13,7 @@ from ngwear.plots.sections import Box, box, when
 from ngwear.plots.stress import directions
 from ngwear.plots.style import COLOURS, new_figure
 from ngwear.plots.torn import RUBBER
-from ngwear.result_file import ResultFile, Snapshot, read_result
+from ngwear.results.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,7 +9,7 @@ from ngwear.plots.style import new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ngwear.result_file import ResultFile
+    from ngwear.results.result_file import ResultFile
 
 IN_ALL = "area lost in all [mm^2]"
 CAUSES = {"wear": "#9db7cc", "tearing": "#222222", "distortion": "#d98324", "coming loose": "#7f5fa8"}

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
 from ngwear.plots.style import COLOURS, write
-from ngwear.result_file import ResultFile, Snapshot, read_result
+from ngwear.results.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

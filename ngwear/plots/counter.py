@@ -11,7 +11,7 @@ from ngwear.plots.style import COLOURS, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ngwear.result_file import ResultFile
+    from ngwear.results.result_file import ResultFile
 
 ALONG, DEPTH = "counter-surface coordinate [mm]", "counter-surface depth [mm]"
 MARGIN = 0.1  # of the worn length, shown to either side of it

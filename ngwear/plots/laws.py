@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from ngwear.laws.fit import LubricationFit
-    from ngwear.result_file import ResultFile
+    from ngwear.results.result_file import ResultFile
 
 QUANTITIES = ("friction coefficient [-]", "specific wear rate [mm^2/N]")
 

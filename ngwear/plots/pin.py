@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files import get_series
+from ngwear.files.files import get_series
 from ngwear.plots.style import write
-from ngwear.sliding.scene import KIND
+from ngwear.scene.pin_scene import KIND
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ngwear.plots.style import COLOURS, write
 from ngwear.plots.wear import worn_edge
-from ngwear.result_file import read_result
+from ngwear.results.result_file import read_result
 
 
 def draw_schemes(runs: Mapping[str, Mapping[str, Path]], strokes: int, file: Path) -> None:

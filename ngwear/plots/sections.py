@@ -13,7 +13,7 @@ from ngwear.geometry.cells import Fate
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ngwear.result_file import ResultFile, Snapshot
+    from ngwear.results.result_file import ResultFile, Snapshot
 
 Array = NDArray[np.float64]
 Box = tuple[Array, Array]

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.laws.damage import Fatigue, MaximumPrincipalStress, Stresses, TensileNormalStress
 from ngwear.plots.sections import draw_planes, living, sections, show, when, worn_face
 from ngwear.plots.style import new_figure
-from ngwear.wear.damage import Fatigue, MaximumPrincipalStress, Stresses, TensileNormalStress
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ngwear.result_file import ResultFile, Snapshot
+    from ngwear.results.result_file import ResultFile, Snapshot
 
 Array = NDArray[np.float64]
 

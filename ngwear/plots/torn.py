@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from ngwear.result_file import ResultFile, Snapshot
+    from ngwear.results.result_file import ResultFile, Snapshot
 
 Array = NDArray[np.float64]
 

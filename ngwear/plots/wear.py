@@ -18,7 +18,7 @@ from ngwear.plots.stress import stress_figure
 from ngwear.plots.style import COLOURS, new_figure, write
 from ngwear.plots.torn import face_figure, ridge_figure
 from ngwear.profiles.worn_edge import STATIONS, seen, view
-from ngwear.result_file import ResultFile, Snapshot, read_result
+from ngwear.results.result_file import ResultFile, Snapshot, read_result
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -13,7 +13,7 @@ from scipy.optimize import minimize_scalar
 from ngwear.errors import SceneError
 from ngwear.laws import PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.profiles.comparison import Comparison
-from ngwear.result_file import ResultFile, read_result
+from ngwear.results.result_file import ResultFile, read_result
 
 Array = NDArray[np.float64]
 AXES = {"x": 0, "y": 1}

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ngwear.errors import ResultError, SceneError
-from ngwear.result_file import ResultFile, read_result
+from ngwear.results.result_file import ResultFile, read_result
 
 Array = NDArray[np.float64]
 STATIONS = 4001

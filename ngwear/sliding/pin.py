@@ -24,8 +24,8 @@ from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Solid
 from ngwear.fields.stream import StreamGrid
 from ngwear.geometry.sheet import Sheet
+from ngwear.scene.pin_scene import Pin, PinMesh
 from ngwear.sliding.patch import Patch, contact_patch
-from ngwear.sliding.scene import Pin, PinMesh
 from ngwear.surfaces import Sphere
 
 Array = NDArray[np.float64]

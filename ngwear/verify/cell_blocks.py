@@ -12,15 +12,15 @@ from ngwear.errors import ConvergenceError
 from ngwear.geometry.cells import Cells, Index, Mask, outlined
 from ngwear.geometry.contour import Array
 from ngwear.geometry.element_body import ElementBody
+from ngwear.laws.damage import Criterion
+from ngwear.loop.stage import Stage
+from ngwear.loop.state import Phase, State
 from ngwear.materials import Hyperelastic
-from ngwear.program import Program, Stroke
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
-from ngwear.stage import Stage
-from ngwear.state import Phase, State
+from ngwear.scene.deactivation import Deactivation
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Plane
 from ngwear.wear.control import JumpControl
-from ngwear.wear.damage import Criterion
-from ngwear.wear.deactivate import Deactivation
 
 TIGHT = NewtonOptions(tolerance=1e-11, max_iterations=40)
 

@@ -10,9 +10,9 @@ on a plate takes it, the free sides are farther and the penetration is 0.5 % les
 from __future__ import annotations
 
 from ngwear.materials import MooneyRivlin
+from ngwear.scene.pin_scene import Pin, PinMesh
 from ngwear.sliding.patch import contact_patch
 from ngwear.sliding.pin import PinStage
-from ngwear.sliding.scene import Pin, PinMesh
 from ngwear.verify.base import Check, Stopwatch
 
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1500.0)

@@ -13,10 +13,10 @@ where the fluid's pressure surpasses it) that is what the seal holds in each str
 from __future__ import annotations
 
 from ngwear.geometry.contour import Contour
+from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.run import run as run_scene
-from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Scene, SupportSpec
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, FluidSpec, Scene, SupportSpec
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 

@@ -18,7 +18,6 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csr_array
 
-from ngwear.deactivation import lose
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.keep import keep
@@ -29,14 +28,15 @@ from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.cells import Cells, Fate, Mask, outlined
 from ngwear.geometry.contour import Array
 from ngwear.geometry.element_body import ElementBody
+from ngwear.laws.damage import MaximumPrincipalStress
+from ngwear.loop.deactivation import lose
+from ngwear.loop.stage import Stage
+from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
-from ngwear.scene import ContactSpec, Scene, SupportSpec
-from ngwear.stage import Stage
-from ngwear.state import State
+from ngwear.scene.scene import ContactSpec, Scene, SupportSpec
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.cell_blocks import TIGHT, grid, held
-from ngwear.wear.damage import MaximumPrincipalStress
 
 RUBBER = NeoHooke(shear=1.0, bulk_modulus=50.0)
 NX, NY, FORCE = 16, 8, 0.5

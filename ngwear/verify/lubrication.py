@@ -22,10 +22,10 @@ import numpy as np
 
 from ngwear.geometry.contour import Contour
 from ngwear.laws import FrictionLaw, Lubrication, WearRate
+from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.run import run as run_scene
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 

@@ -18,15 +18,15 @@ from dataclasses import replace
 import numpy as np
 
 from ngwear.geometry.cells import Cells
-from ngwear.program import Program, Stroke
-from ngwear.results import BOOK, LOST
-from ngwear.run import run as run_scene
-from ngwear.scene import Scene
-from ngwear.state import State
+from ngwear.laws.damage import MaximumPrincipalStress
+from ngwear.loop.run import run as run_scene
+from ngwear.loop.state import State
+from ngwear.results.results import BOOK, LOST
+from ngwear.scene.deactivation import DistortionFilter
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.no_loss import scene
-from ngwear.wear.damage import MaximumPrincipalStress
-from ngwear.wear.deactivate import DistortionFilter
 
 CAUSES = ("wear", *LOST.values())  # all at work here
 BOOKED = ("wear", *BOOK.values())

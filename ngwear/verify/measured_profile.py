@@ -15,9 +15,9 @@ from pathlib import Path
 
 import numpy as np
 
+from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
 from ngwear.profiles.comparison import compare_profile
-from ngwear.run import run as run_scene
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import CylinderOnBlock
 

@@ -15,19 +15,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from ngwear.deactivation import element_body
 from ngwear.effects.base import VOLUMETRIC_STRESS
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
 from ngwear.geometry.contour import Array, Contour
+from ngwear.laws.damage import TensileNormalStress
+from ngwear.loop.deactivation import element_body
+from ngwear.loop.stage import Stage
+from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
-from ngwear.stage import Stage
-from ngwear.stepper import Stepper
+from ngwear.scene.deactivation import Deactivation, DistortionFilter
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
-from ngwear.wear.damage import TensileNormalStress
-from ngwear.wear.deactivate import Deactivation, DistortionFilter
 
 WEAR_RATE, STROKES = 1e-3, 8
 NEVER = {"damage": TensileNormalStress(critical=1e9), "distortion": DistortionFilter(corner_cosine=1 - 1e-9)}

@@ -24,16 +24,16 @@ from collections.abc import Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from ngwear.deactivation import exhaustion, tear
 from ngwear.errors import GeometryError
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.contour import Array
+from ngwear.laws.damage import MaximumPrincipalStress, TensileNormalStress
+from ngwear.loop.deactivation import exhaustion, tear
+from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
-from ngwear.scene import SupportSpec
-from ngwear.state import State
+from ngwear.scene.scene import SupportSpec
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.cell_blocks import grid, held, named, pull, reaction
-from ngwear.wear.damage import MaximumPrincipalStress, TensileNormalStress
 
 RUBBER = NeoHooke(shear=1.0, bulk_modulus=50.0)
 LENGTHS, WIDTHS = (1.0, 1.3, 1.7, 2.0), (0.1, 0.5, 0.2, 0.6)  # of the bars [mm]

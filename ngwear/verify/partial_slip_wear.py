@@ -36,11 +36,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.geometry.contour import Contour
+from ngwear.loop.state import State
+from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
-from ngwear.state import State
-from ngwear.stepper import Stepper
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 

@@ -20,9 +20,9 @@ import numpy as np
 
 from ngwear.errors import SceneError
 from ngwear.plots.pin import read_pin
-from ngwear.run_pin import run_pin
-from ngwear.scenefile import read_scene
-from ngwear.sliding.scene import PinScene
+from ngwear.scene.pin_scene import PinScene
+from ngwear.scene.scenefile import read_scene
+from ngwear.sliding.run_pin import run_pin
 from ngwear.verify.base import Check
 
 CASE = "pin_on_plate"

@@ -21,12 +21,12 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import SceneError
 from ngwear.geometry.contour import Contour
-from ngwear.result_file import Snapshot
-from ngwear.run import Result
-from ngwear.run import run as run_scene
-from ngwear.scene import Scene
-from ngwear.scenefile import read_scene
-from ngwear.state import StrokeReport
+from ngwear.loop.run import Result
+from ngwear.loop.run import run as run_scene
+from ngwear.loop.state import StrokeReport
+from ngwear.results.result_file import Snapshot
+from ngwear.scene.scene import Scene
+from ngwear.scene.scenefile import read_scene
 from ngwear.verify.base import Check, Stopwatch
 
 CASE = "rod_seal"

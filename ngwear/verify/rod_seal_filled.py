@@ -11,9 +11,9 @@ much. These are comparisons, not references: their tolerances are bands.
 
 from __future__ import annotations
 
-from ngwear.results import depths
-from ngwear.run import Result
-from ngwear.run import run as run_scene
+from ngwear.loop.run import Result
+from ngwear.loop.run import run as run_scene
+from ngwear.results.results import depths
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.rod_seal import imbalance, run_and_watch, shipped_scene
 

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ngwear.run import run as run_scene
-from ngwear.scene import Scene
+from ngwear.loop.run import run as run_scene
+from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.rod_seal import shipped_scene
 

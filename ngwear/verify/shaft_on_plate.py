@@ -36,8 +36,8 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.geometry.contour import Array, Contour
-from ngwear.scene import Scene
-from ngwear.stepper import Stepper
+from ngwear.loop.stepper import Stepper
+from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.error_estimates import BAND
 from ngwear.verify.rod_seal import shipped_scene

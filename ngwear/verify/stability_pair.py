@@ -19,8 +19,8 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.geometry.contour import Contour
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import steps

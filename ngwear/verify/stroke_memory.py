@@ -7,7 +7,7 @@ before the first stroke.
 
 Resolved: each reversal at once, then 24 growing steps. Compared are the means over each of the first six strokes of
 the cylinder's force and of the highest contact pressure. With a pressed side strains do not stand still during a
-stroke: that is the error. What a run of the same scene states of it (``ngwear.time_step``) is held against the strokes
+stroke: that is the error. What a run of the same scene states of it (``ngwear.loop.time_step``) is held against the strokes
 resolved in time, and its error with strokes in four parts against that with strokes in one.
 
 Jumps of 1, 3, 9 and 27 cycles, growing as wear's do, against the 40 one by one: force and pressure of the last
@@ -23,9 +23,6 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import readings
-from ngwear.accuracy import Accuracy
-from ngwear.cycle_memory import CycleMemory
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
@@ -39,12 +36,15 @@ from ngwear.fields.background import Background
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
+from ngwear.loop.cycle_memory import CycleMemory
+from ngwear.loop.run import run as run_scene
+from ngwear.loop.time_step import ahead
 from ngwear.materials import MooneyRivlin, PronySeries
-from ngwear.program import Program, Stroke
-from ngwear.run import run as run_scene
-from ngwear.scene import ContactSpec, FluidSpec, Scene, SupportSpec, Wear
+from ngwear.results.results import readings
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import ContactSpec, FluidSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Cylinder
-from ngwear.time_step import ahead
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
 

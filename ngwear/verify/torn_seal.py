@@ -27,14 +27,14 @@ from typing import Any
 import numpy as np
 
 from ngwear.errors import NgwearError
-from ngwear.program import Stroke
-from ngwear.readings import reading
-from ngwear.results import BOOK
-from ngwear.run import Result
-from ngwear.run import run as run_scene
-from ngwear.scene import Scene
-from ngwear.seen_order import relative_errors
-from ngwear.sweep import Outcome, sweep
+from ngwear.loop.run import Result
+from ngwear.loop.run import run as run_scene
+from ngwear.parallel.sweep import Outcome, sweep
+from ngwear.results.readings import reading
+from ngwear.results.results import BOOK
+from ngwear.results.seen_order import relative_errors
+from ngwear.scene.program import Stroke
+from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.error_estimates import effectivities, stated_of
 from ngwear.verify.rod_seal import shipped_scene

@@ -30,7 +30,7 @@ from dataclasses import replace
 import numpy as np
 
 from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear
-from ngwear.scene import ContactSpec, Scene
+from ngwear.scene.scene import ContactSpec, Scene
 from ngwear.verify import stability_pair, worn_cylinder
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import CONTACT, depth_at, middle_pressure, steps

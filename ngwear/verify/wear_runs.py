@@ -10,16 +10,16 @@ import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.geometry.contour import Contour
+from ngwear.loop.stepper import Stepper
+from ngwear.loop.wearing import CALM
 from ngwear.materials import Hyperelastic
-from ngwear.program import Program, Stroke
-from ngwear.scene import Accuracy, ContactSpec, Save, Scene, SupportSpec, Wear
-from ngwear.stepper import Stepper
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Save, Scene, SupportSpec, Wear
 from ngwear.surfaces import Cylinder
 from ngwear.wear.backward import share_of_last
-from ngwear.wearing import CALM
 
 if TYPE_CHECKING:
-    from ngwear.state import State
+    from ngwear.loop.state import State
 
 CONTACT = "ring"
 

@@ -18,8 +18,8 @@ from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.contour import Contour
 from ngwear.laws import PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
 from ngwear.verify.wear_runs import steps

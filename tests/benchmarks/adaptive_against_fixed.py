@@ -58,9 +58,9 @@ def fine_along_the_edges(edge):
 
 def subject(kind, setting, jump, name):
     """One run, as JSON on the last line."""
-    from ngwear.adaptive import at_level
-    from ngwear.run import run
-    from ngwear.scenefile import read_scene
+    from ngwear.error_estimates.adaptive import at_level
+    from ngwear.loop.run import run
+    from ngwear.scene.scenefile import read_scene
 
     scene = read_scene(GEOMETRIES / name / "scene.toml")
     scene = replace(scene, save=replace(scene.save, strokes=()))

@@ -49,9 +49,9 @@ def by_hand():
 
 def through_scene():
     """What the program makes of a scene without friction; it imports no more."""
-    from ngwear.program import Program, Stroke
-    from ngwear.scene import ContactSpec, Scene, SupportSpec
-    from ngwear.stage import Stage
+    from ngwear.loop.stage import Stage
+    from ngwear.scene.program import Program, Stroke
+    from ngwear.scene.scene import ContactSpec, Scene, SupportSpec
 
     body = sheet()
     scene = Scene(

@@ -26,9 +26,9 @@ QUANTITIES = ("maximum depth [mm]", "worn area [mm^2]", "peak pressure [MPa]")
 def subject(across, name):
     """One run, as JSON on the last line."""
     begun = time.perf_counter()
-    from ngwear.accuracy import Accuracy
-    from ngwear.run import run
-    from ngwear.scenefile import read_scene
+    from ngwear.loop.run import run
+    from ngwear.scene.accuracy import Accuracy
+    from ngwear.scene.scenefile import read_scene
 
     scene = read_scene(GEOMETRIES / f"{name}.toml")
     scene = replace(scene, accuracy=Accuracy(across=across))
@@ -43,7 +43,7 @@ def subject(across, name):
 
 def main(scenes):
     """Print a row for each scene and number of elements."""
-    from ngwear.accuracy import PRESETS
+    from ngwear.scene.accuracy import PRESETS
 
     presets = {across: preset for preset, across in PRESETS.items()}
     finest = max(presets)

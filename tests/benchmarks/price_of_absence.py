@@ -53,10 +53,10 @@ def pair(effect):
     from ngwear.geometry.contour import Contour
     from ngwear.laws import PowerWear
     from ngwear.materials import MooneyRivlin, PronySeries
-    from ngwear.program import Program, Stroke
-    from ngwear.scene import Accuracy, ContactSpec, FluidSpec, Scene, SupportSpec, Wear
+    from ngwear.scene.deactivation import Deactivation
+    from ngwear.scene.program import Program, Stroke
+    from ngwear.scene.scene import Accuracy, ContactSpec, FluidSpec, Scene, SupportSpec, Wear
     from ngwear.surfaces import Cylinder
-    from ngwear.wear.deactivate import Deactivation
 
     forth = Stroke(name="forth", travel=10.0, speed=20.0)
     back = Stroke(name="back", travel=10.0, speed=20.0, direction=-1.0)
@@ -117,7 +117,7 @@ def without(effect, scene, bare):
 
 def run(scene):
     """Mount and slide: CPU seconds, and the state at the end."""
-    from ngwear.stepper import Stepper
+    from ngwear.loop.stepper import Stepper
 
     stepper, start = Stepper(scene), time.process_time()
     state = stepper.start()

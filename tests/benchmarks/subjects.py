@@ -6,7 +6,7 @@ import resource
 import subprocess
 import sys
 
-from ngwear.workers import ONE_THREAD
+from ngwear.parallel.workers import ONE_THREAD
 
 SUBJECT = "--subject"
 

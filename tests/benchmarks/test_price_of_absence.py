@@ -26,8 +26,8 @@ def test_what_is_taken_out_costs_nothing(effect, capsys):
 def test_what_effects_bring():
     """Unknowns by stick and slip alone; arms, a law of wear and a worn surface add none."""
     found = {e: price_of_absence.pair(e) for e in ("friction", "stick-slip", "memory", "law of wear")}
-    from ngwear.mounting import unworn_body
-    from ngwear.stage import Stage
+    from ngwear.loop.mounting import unworn_body
+    from ngwear.loop.stage import Stage
 
     def unknowns(scene):
         return Stage(scene, unworn_body(scene)).problem.space.ndof

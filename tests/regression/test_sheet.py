@@ -2,7 +2,7 @@
 
 import pytest
 
-from ngwear.run import run
+from ngwear.loop.run import run
 
 SUMMARY = {
     "worn area [mm^2]": 0.020288,

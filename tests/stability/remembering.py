@@ -11,8 +11,8 @@ from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.materials import PronySeries
+from ngwear.scene.pin_scene import Pin, PinMesh
 from ngwear.sliding.pin import PinStage
-from ngwear.sliding.scene import Pin, PinMesh
 from ngwear.verify import hunter, indentation, memory
 
 ARM = PronySeries((2.0,), (1.0,))

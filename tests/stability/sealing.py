@@ -17,10 +17,10 @@ from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
+from ngwear.loop.mounting import mount
+from ngwear.loop.refinement import mounting_field
+from ngwear.loop.stage import Stage
 from ngwear.materials import MooneyRivlin
-from ngwear.mounting import mount
-from ngwear.refinement import mounting_field
-from ngwear.stage import Stage
 from ngwear.surfaces import Plane
 from ngwear.verify import ring
 from ngwear.verify.builders import mean, meshed

@@ -8,10 +8,10 @@ from case import Case
 from physics import ROUGHNESS, Finding, body, book, near, pressure
 
 from ngwear.geometry.contour import Contour
+from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
-from ngwear.stepper import Stepper
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Cylinder, Plane
 from ngwear.verify import stability_pair
 

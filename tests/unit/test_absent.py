@@ -7,8 +7,10 @@ import pytest
 from scipy.integrate import quad
 from scipy.special import k0
 
-from ngwear.absent import Assumed, adhesion, film, heat, inertia, onset, relaxation
 from ngwear.errors import SceneError
+from ngwear.explanation import adhesion, film, heat, inertia, relaxation
+from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.verdict import onset
 from ngwear.materials import WLF
 
 STEEL = {"conductivity": 50.0, "heat_capacity": 4.0}  # diffusivity 12.5 mm²/s

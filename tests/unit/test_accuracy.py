@@ -3,14 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear.accuracy import ALIKE, PRESETS, Accuracy
-from ngwear.choosing import chosen, laid_out
-from ngwear.companion import scaled
+from ngwear.error_estimates.companion import scaled
 from ngwear.errors import SceneError
-from ngwear.run import run
-from ngwear.scene import Wear
-from ngwear.scenefile import read_scene
-from ngwear.stepper import Stepper
+from ngwear.loop.choosing import chosen, laid_out
+from ngwear.loop.run import run
+from ngwear.loop.stepper import Stepper
+from ngwear.scene.accuracy import ALIKE, PRESETS, Accuracy
+from ngwear.scene.scene import Wear
+from ngwear.scene.scenefile import read_scene
 from ngwear.verify.no_loss import scene
 
 GIVEN = replace(scene("implicit"), deactivation=None, wear=Wear())
@@ -173,7 +173,7 @@ def test_presets_agree_within_what_they_are_for():
 
 
 def test_lost_elements_need_a_length():
-    from ngwear.wear.deactivate import Deactivation
+    from ngwear.scene.deactivation import Deactivation
 
     given = scene("implicit")
     losing = {"deactivation": Deactivation(depth=0.2), "wear": replace(given.wear, remesh="never")}

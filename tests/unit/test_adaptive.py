@@ -3,15 +3,15 @@ from dataclasses import replace
 
 import pytest
 
-from ngwear import adaptive
-from ngwear.accuracy import Accuracy
-from ngwear.adaptive import ACROSS, LEVELS, at_level, first_across, next_across, run_to_error
 from ngwear.cli import main
-from ngwear.companion import COARSEST, FILE
+from ngwear.error_estimates import adaptive
+from ngwear.error_estimates.adaptive import ACROSS, LEVELS, at_level, first_across, next_across, run_to_error
+from ngwear.error_estimates.companion import COARSEST, FILE
 from ngwear.errors import ResultError, SceneError
-from ngwear.readings import DEPTH
-from ngwear.scene import Wear
-from ngwear.stepper import Stepper
+from ngwear.loop.stepper import Stepper
+from ngwear.results.readings import DEPTH
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.scene import Wear
 from ngwear.verify.no_loss import scene
 
 ASKED = 2e-3

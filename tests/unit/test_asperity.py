@@ -6,8 +6,8 @@ import pytest
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.materials import NeoHooke, PronySeries
 from ngwear.materials.library import filled_rubber
-from ngwear.plots.sliding import draw_friction, draw_pressures
 from ngwear.sliding.asperity import Asperity, slide
+from ngwear.sliding.figures import draw_friction, draw_pressures
 from ngwear.sliding.passing import slide_in_time
 
 RUBBER = NeoHooke(shear=2.0, bulk_modulus=2e4)

@@ -7,8 +7,8 @@ from types import SimpleNamespace
 import pytest
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
-from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
-from ngwear.stepper import Stepper
+from ngwear.files.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.loop.stepper import Stepper
 from ngwear.verify import CASES, Check
 
 INTERRUPTED = 130
@@ -211,5 +211,5 @@ def test_help_and_bad_scenes_load_no_solver(tmp_path):
 
 
 def test_importing_the_package_loads_nothing_heavy():
-    code = "import sys, ngwear, ngwear.scene; sys.exit('ngsolve' in sys.modules)"
+    code = "import sys, ngwear, ngwear.scene.scene; sys.exit('ngsolve' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear import companion
-from ngwear.companion import (
+from ngwear.error_estimates import companion
+from ngwear.error_estimates.companion import (
     COARSER,
     COARSEST,
     FILE,
@@ -17,16 +17,16 @@ from ngwear.companion import (
     run_stated,
     stated,
 )
+from ngwear.loop.run import run
 from ngwear.materials import PronySeries
+from ngwear.parallel.workers import Worker
 from ngwear.plots import wear
-from ngwear.readings import DEPTH, LOST, PEAK, PLACES, element_edge, reading
-from ngwear.result_file import read_result
-from ngwear.results import TORN, fingerprint
-from ngwear.run import run
-from ngwear.scene import Wear
-from ngwear.seen_order import relative_errors
+from ngwear.results.readings import DEPTH, LOST, PEAK, PLACES, element_edge, reading
+from ngwear.results.result_file import read_result
+from ngwear.results.results import TORN, fingerprint
+from ngwear.results.seen_order import relative_errors
+from ngwear.scene.scene import Wear
 from ngwear.verify.no_loss import scene
-from ngwear.workers import Worker
 
 
 @pytest.fixture(scope="module")
@@ -262,7 +262,7 @@ def test_figures_are_drawn_half_by_the_worker_or_else_all_here(finished, tmp_pat
     drawn, folder = [], finished[0]
     plot = wear.plot
     monkeypatch.setattr(wear, "plot", lambda *a, **how: drawn.append(plot(*a, **how)))  # a worker has its own
-    worker = Worker("ngwear.companion")
+    worker = Worker("ngwear.error_estimates.companion")
     if not there:
         worker.end()
     for name in (FILE, COARSEST):

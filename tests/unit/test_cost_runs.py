@@ -13,18 +13,18 @@ import numpy as np
 import pytest
 from conftest import REMEMBERS
 
-from ngwear import stepper
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
-from ngwear.cost import CSV, JSON, PNG, RUNS, cost
-from ngwear.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
-from ngwear.costs import knobs as knobs_of
-from ngwear.costs.knobs import at, knobs
-from ngwear.costs.ladder import STOPPED
+from ngwear.error_estimates import knobs as knobs_of
+from ngwear.error_estimates.cost import CSV, JSON, PNG, RUNS, cost
+from ngwear.error_estimates.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
+from ngwear.error_estimates.knobs import at, knobs
+from ngwear.error_estimates.ladder import STOPPED
 from ngwear.errors import ConvergenceError, SceneError
-from ngwear.scenefile import read_scene
-from ngwear.sweep import sweep
+from ngwear.loop import stepper
+from ngwear.parallel.sweep import sweep
+from ngwear.parallel.workers import one_thread_pool
+from ngwear.scene.scenefile import read_scene
 from ngwear.verify.rod_seal import shipped_scene
-from ngwear.workers import one_thread_pool
 
 JUMPS = (("strokes = 4", "strokes = 12"), ('step = "each"', 'step = "jump"'))
 PIN = """
@@ -243,7 +243,7 @@ def test_an_alarm_that_is_swallowed_stops_the_run_all_the_same(sheet, monkeypatc
         on_step(SimpleNamespace(strokes=1))
         pytest.fail("the run went on")
 
-    monkeypatch.setattr("ngwear.run.run", swallows)
+    monkeypatch.setattr("ngwear.loop.run.run", swallows)
     found = Limited(Here(), 0.2).submit(measure, Point(sheet)).result()
     assert found.status == STOPPED
     assert found.message == "no time was left"

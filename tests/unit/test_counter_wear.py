@@ -6,16 +6,16 @@ import pickle
 import numpy as np
 import pytest
 
-from ngwear.counter_wear import ways
 from ngwear.errors import SceneError
-from ngwear.explain import explain
+from ngwear.explanation.explain import explain
+from ngwear.loop.counter_wear import ways
+from ngwear.loop.run import run
+from ngwear.loop.stepper import Stepper
 from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.wear import plot
-from ngwear.program import Program, Stroke
-from ngwear.result_file import read_result
-from ngwear.run import run
-from ngwear.scenefile import read_scene
-from ngwear.stepper import Stepper
+from ngwear.results.result_file import read_result
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scenefile import read_scene
 from ngwear.surfaces import Cylinder, Plane, WornProfile
 from ngwear.wear.strokes import Strokes
 

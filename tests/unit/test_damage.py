@@ -4,18 +4,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear import deactivation
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.errors import SceneError
 from ngwear.geometry.cells import Fate
-from ngwear.input.deactivation import read_deactivation
-from ngwear.materials import NeoHooke
-from ngwear.program import Program
-from ngwear.scene import SupportSpec, Wear
-from ngwear.stepper import Stepper
-from ngwear.verify.cell_blocks import grid, held, on_edge, pull
-from ngwear.verify.no_loss import scene
-from ngwear.wear.damage import (
+from ngwear.laws.damage import (
     CRITERIA,
     Fatigue,
     MaximumPrincipalStress,
@@ -23,7 +15,15 @@ from ngwear.wear.damage import (
     Stresses,
     TensileNormalStress,
 )
-from ngwear.wear.deactivate import DistortionFilter
+from ngwear.loop import deactivation
+from ngwear.loop.stepper import Stepper
+from ngwear.materials import NeoHooke
+from ngwear.scene.deactivation import DistortionFilter
+from ngwear.scene.program import Program
+from ngwear.scene.read_deactivation import read_deactivation
+from ngwear.scene.scene import SupportSpec, Wear
+from ngwear.verify.cell_blocks import grid, held, on_edge, pull
+from ngwear.verify.no_loss import scene
 
 # Cauchy stresses xx, yy, xy [MPa] and the principal stress by hand.
 STATES = {

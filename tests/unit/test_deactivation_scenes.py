@@ -5,23 +5,23 @@ import numpy as np
 import pytest
 from conftest import REMEMBERS
 
-from ngwear import deactivation
 from ngwear.errors import GeometryError, MeshError, SceneError
-from ngwear.explain import explain
+from ngwear.explanation.explain import explain
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.contour import polygon_area
+from ngwear.laws.damage import Fatigue, MaximumPrincipalStress, Stresses, TensileNormalStress
+from ngwear.loop import deactivation
+from ngwear.loop.run import GAVE_UP, run
+from ngwear.loop.stepper import Stepper
+from ngwear.loop.wearing import Wearing
 from ngwear.materials import NeoHooke
-from ngwear.program import Program
-from ngwear.run import GAVE_UP, run
-from ngwear.scene import SupportSpec
-from ngwear.scenefile import read_scene
-from ngwear.stepper import Stepper
+from ngwear.scene.deactivation import Deactivation, DistortionFilter
+from ngwear.scene.program import Program
+from ngwear.scene.scene import SupportSpec
+from ngwear.scene.scenefile import read_scene
 from ngwear.verify.cell_blocks import grid, held
 from ngwear.verify.material_book import torn_scene
 from ngwear.verify.no_loss import scene
-from ngwear.wear.damage import Fatigue, MaximumPrincipalStress, Stresses, TensileNormalStress
-from ngwear.wear.deactivate import Deactivation, DistortionFilter
-from ngwear.wearing import Wearing
 
 NOT_REPEATABLE = {"wall time [s]", "CPU time [s]", "peak memory [MB]"}
 TABLE = """

@@ -8,13 +8,14 @@ from pathlib import Path
 import pytest
 from conftest import REMEMBERS
 
-from ngwear.absent import Assumed, heat
 from ngwear.cli import BAD_INPUT, OK, main
-from ngwear.explain import explain
-from ngwear.explaining.pressing import press
-from ngwear.explaining.text import lines
-from ngwear.scenefile import read_scene
-from ngwear.sliding.left_out import left_out as left_out_of_pin
+from ngwear.explanation import heat
+from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.explain import explain
+from ngwear.explanation.pin_left_out import left_out as left_out_of_pin
+from ngwear.explanation.pressing import press
+from ngwear.explanation.text import lines
+from ngwear.scene.scenefile import read_scene
 
 GEOMETRIES = Path(__file__).parents[2] / "geometries"
 ONSET = "speed from which the flash temperature exceeds 10 K [mm/s]"
@@ -51,8 +52,8 @@ def test_every_absent_effect_has_numbers_and_a_verdict(told):
 
 
 def test_unknowns_and_entries_are_the_problems_own(told, sheet):
-    from ngwear.mounting import unworn_body
-    from ngwear.stage import Stage
+    from ngwear.loop.mounting import unworn_body
+    from ngwear.loop.stage import Stage
 
     found, problem = told(), Stage(sheet, unworn_body(sheet)).problem
     assert sum(found["unknowns"].values()) == problem.space.ndof

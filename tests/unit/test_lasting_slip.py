@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ngwear.lasting_slip import lasting
-from ngwear.program import Stroke
-from ngwear.state import Phase
+from ngwear.loop.lasting_slip import lasting
+from ngwear.loop.state import Phase
+from ngwear.scene.program import Stroke
 
 OUT, BACK = Stroke(name="out", travel=2.0), Stroke(name="back", travel=2.0, direction=-1)
 OWN, OTHER = np.array([0.0, 0.2, 0.5]), np.array([0.1, 0.0, 0.4])

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 from ngwear.cli import main
-from ngwear.drift import friction_range, steady_cycles
 from ngwear.equilibrium.steady import SteadyOptions
 from ngwear.errors import SceneError
-from ngwear.explain import explain
+from ngwear.explanation.explain import explain
 from ngwear.laws import ByPressure, Lubrication, Product, Stribeck, WearRate
+from ngwear.loop.drift import friction_range, steady_cycles
+from ngwear.loop.run import run
+from ngwear.loop.stepper import Stepper
 from ngwear.materials import MooneyRivlin, PronySeries
-from ngwear.program import Program, Stroke
-from ngwear.result_file import read_result
-from ngwear.run import run
-from ngwear.scenefile import read_scene
+from ngwear.results.result_file import read_result
+from ngwear.scene.pin_scene import Pin, PinMesh
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scenefile import read_scene
 from ngwear.sliding.pin import PinStage
-from ngwear.sliding.scene import Pin, PinMesh
-from ngwear.stepper import Stepper
 from ngwear.wear.strokes import Strokes
 
 MU, K = "roller friction coefficient [-]", "roller specific wear rate [mm^2/N]"

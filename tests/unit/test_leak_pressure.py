@@ -5,27 +5,27 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ngwear.adaptive import at_level
-from ngwear.companion import stated
-from ngwear.cost import cost
-from ngwear.cost_runs import wear_values
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import advance
+from ngwear.error_estimates.adaptive import at_level
+from ngwear.error_estimates.companion import stated
+from ngwear.error_estimates.cost import cost
+from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.contour import Contour
-from ngwear.input.tables import record
+from ngwear.loop.run import run
+from ngwear.loop.stepper import Stepper
 from ngwear.plots.wear import history_figure
-from ngwear.program import Program, Stroke
-from ngwear.readings import LEAKS, reading
-from ngwear.result_file import read_result
-from ngwear.results import LEAK, Recorder
-from ngwear.run import run
-from ngwear.scene import FluidSpec
-from ngwear.stepper import Stepper
+from ngwear.results.readings import LEAKS, reading
+from ngwear.results.result_file import read_result
+from ngwear.results.results import LEAK, Recorder
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import FluidSpec
+from ngwear.scene.tables import record
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
 from ngwear.verify.leak_pressure import PRESSURES, RUBBER, scene
@@ -137,6 +137,6 @@ def test_a_study_reads_it_whether_it_is_asked_for_or_not(monkeypatch):
     def seen(asked, *_):
         raise InterruptedError(asked.fluid.leak_pressure)
 
-    monkeypatch.setattr("ngwear.cost._runner", seen)
+    monkeypatch.setattr("ngwear.error_estimates.cost._runner", seen)
     with pytest.raises(InterruptedError, match="True"):
         cost(replace(scene(), fluid=replace(scene().fluid, leak_pressure=False)), budget=1.0)

@@ -6,19 +6,19 @@ import ngsolve as ng
 import pytest
 from conftest import REMEMBERS
 
-from ngwear.cost_runs import wear_values
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.carry import carry
 from ngwear.equilibrium.problem import Problem
+from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.fields.displacements import displacements
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.contour import Contour
+from ngwear.loop.mounting import unworn_body
+from ngwear.loop.run import run
+from ngwear.loop.stage import Stage
 from ngwear.materials import NeoHooke
-from ngwear.mounting import unworn_body
-from ngwear.run import run
-from ngwear.scenefile import read_scene
-from ngwear.stage import Stage
+from ngwear.scene.scenefile import read_scene
 from ngwear.verify.builders import meshed
 
 RUBBER = NeoHooke(shear=1.0, bulk_modulus=100.0)

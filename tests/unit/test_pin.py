@@ -10,8 +10,8 @@ from ngwear.equilibrium.steady import SteadyOptions
 from ngwear.errors import SceneError
 from ngwear.geometry.sheet import Sheet
 from ngwear.materials import MooneyRivlin, PronySeries
+from ngwear.scene.pin_scene import Pin, PinMesh
 from ngwear.sliding.pin import PinStage, slide_pin
-from ngwear.sliding.scene import Pin, PinMesh
 
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1500.0)
 PIN = Pin(material=RUBBER, series=PronySeries((1.0,), (1e-3,)), load=20.0, track_radius=math.inf)

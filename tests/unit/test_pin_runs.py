@@ -12,7 +12,7 @@ import pytest
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.errors import SceneError
 from ngwear.materials import PronySeries
-from ngwear.scenefile import read_scene
+from ngwear.scene.scenefile import read_scene
 from ngwear.sliding.pin import COARSER, slide_pin
 
 SCENE = """
@@ -109,8 +109,8 @@ def test_resumed_run_does_only_what_is_missing(finished):
 
 
 def test_run_that_loses_a_speed_keeps_the_others(finished, tmp_path, capsys, monkeypatch):
-    from ngwear import run_pin as module
-    from ngwear.sweep import Failure, Outcome
+    from ngwear.parallel.sweep import Failure, Outcome
+    from ngwear.sliding import run_pin as module
 
     real = module.sweep
 

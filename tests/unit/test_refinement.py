@@ -3,10 +3,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear.accuracy import Accuracy
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.refinement import LEAST, NARROWEST, NEAR, contact_sizes, element_edges, outgrown, wanted_size
-from ngwear.stepper import Stepper
+from ngwear.loop.refinement import LEAST, NARROWEST, NEAR, contact_sizes, element_edges, outgrown, wanted_size
+from ngwear.loop.stepper import Stepper
+from ngwear.scene.accuracy import Accuracy
 
 
 @pytest.fixture

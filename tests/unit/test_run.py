@@ -15,17 +15,17 @@ from dataclasses import replace
 
 import pytest
 
-from ngwear import stepper
 from ngwear.cli import main
 from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError, SceneError
-from ngwear.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
-from ngwear.results import Folder
-from ngwear.run import COMPLETED, GAVE_UP, run
-from ngwear.scene import Save
-from ngwear.scenefile import read_scene
-from ngwear.stepper import Stepper
-from ngwear.wearing import Wearing
+from ngwear.files.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.loop import stepper
+from ngwear.loop.run import COMPLETED, GAVE_UP, run
+from ngwear.loop.stepper import Stepper
+from ngwear.loop.wearing import Wearing
+from ngwear.results.results import Folder
+from ngwear.scene.scene import Save
+from ngwear.scene.scenefile import read_scene
 
 FILES = {SERIES, FIELDS, SUMMARY, CHECKPOINT}
 CONTRACT = {

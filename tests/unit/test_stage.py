@@ -8,13 +8,13 @@ from ngwear.equilibrium.problem import Problem, Support
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.geometry.contour import Contour
+from ngwear.loop.refinement import mounting_field
+from ngwear.loop.stage import Stage
+from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
-from ngwear.program import Program, Stroke
-from ngwear.refinement import mounting_field
-from ngwear.scene import Accuracy, ContactSpec, Scene, SupportSpec
-from ngwear.scenefile import read_scene
-from ngwear.stage import Stage
-from ngwear.stepper import Stepper
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec
+from ngwear.scene.scenefile import read_scene
 from ngwear.surfaces import Plane
 
 

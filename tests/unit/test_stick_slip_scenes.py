@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from ngwear.errors import SceneError
-from ngwear.explain import explain
-from ngwear.run import COMPLETED, run
-from ngwear.scenefile import read_scene
-from ngwear.stepper import Stepper
+from ngwear.explanation.explain import explain
+from ngwear.loop.run import COMPLETED, run
+from ngwear.loop.stepper import Stepper
+from ngwear.scene.scenefile import read_scene
 
 MU, FORCE, RATE = 0.3, 0.5, 1e-3
 ONCE = 'name = "stroke"\ntravel = 10.0\n'

@@ -13,7 +13,7 @@ import pytest
 import sweep_points as at
 
 from ngwear.errors import ResultError, SceneError
-from ngwear.sweep import sweep
+from ngwear.parallel.sweep import sweep
 
 
 def results(outcomes):
@@ -87,7 +87,7 @@ KILLED = """
 import functools, sys
 sys.path.insert(0, {tests!r})
 import sweep_points as at
-from ngwear.sweep import sweep
+from ngwear.parallel.sweep import sweep
 if __name__ == "__main__":
     sweep(functools.partial(at.counted, log={log!r}, wait=0.25), range(40), workers=2, folder={folder!r})
 """
@@ -130,7 +130,7 @@ def test_damaged_file_is_named(tmp_path):
 
 def test_function_typed_into_a_session_is_refused():
     code = (
-        "from ngwear.sweep import sweep\n"
+        "from ngwear.parallel.sweep import sweep\n"
         "from ngwear.errors import SceneError\n"
         "def mine(x): return x\n"
         "try: sweep(mine, [1])\n"

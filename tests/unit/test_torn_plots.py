@@ -15,7 +15,7 @@ from ngwear.plots.book import AREAS, CAUSES, IN_ALL, book_figure
 from ngwear.plots.sections import living, lost, overlapping, sections, when, worn_face
 from ngwear.plots.stress import critical_stress, directions, stress_figure, tensile
 from ngwear.plots.torn import LOST, face_figure, ridge_figure, ridge_window
-from ngwear.result_file import ResultFile, Snapshot, read_result
+from ngwear.results.result_file import ResultFile, Snapshot, read_result
 
 WIDE, HIGH, SIDE, WORN = 30, 10, 0.1, 0.02  # squares, mm, and how far the face has receded in the end
 PICTURES = ("torn_profiles", "ridge_evolution", "stress_field", "material_book")

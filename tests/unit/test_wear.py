@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.state import FALLS, Ledger
+from ngwear.loop.state import FALLS, Ledger
 from ngwear.wear.archard import critical_distance, worn_share
 from ngwear.wear.control import GROWTH, SAFETY, JumpControl
 

@@ -13,7 +13,7 @@ from ngwear.effects.pressure_wear import PressureWear
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import SceneError
-from ngwear.explain import explain
+from ngwear.explanation.explain import explain
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.laws import (
     ByPressure,
@@ -25,8 +25,8 @@ from ngwear.laws import (
     ThresholdWear,
     WearLaw,
 )
-from ngwear.scenefile import read_scene
-from ngwear.stepper import Stepper
+from ngwear.loop.stepper import Stepper
+from ngwear.scene.scenefile import read_scene
 from ngwear.verify.builders import meshed
 from ngwear.verify.worn_column import CONTOUR, PATCH, RUBBER, SURFACE
 

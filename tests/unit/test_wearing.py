@@ -7,10 +7,10 @@ import pytest
 
 from ngwear.errors import MeshError
 from ngwear.geometry.contour import Contour
-from ngwear.remesh import _Moved
-from ngwear.stepper import Stepper
+from ngwear.loop.remesh import _Moved
+from ngwear.loop.stepper import Stepper
+from ngwear.loop.wearing import Wearing
 from ngwear.wear.backward import error_over_difference, share_of_last
-from ngwear.wearing import Wearing
 
 
 def worn(ways):

@@ -6,7 +6,7 @@ import time
 import pytest
 
 from ngwear.errors import ResultError
-from ngwear.workers import ONE_THREAD, Worker
+from ngwear.parallel.workers import ONE_THREAD, Worker
 
 
 def ended(worker, *, within=20.0):

@@ -8,7 +8,7 @@ from functools import partial
 import pytest
 
 from ngwear.errors import SceneError
-from ngwear.run import run as run_scene
+from ngwear.loop.run import run as run_scene
 from ngwear.verify import CASES, checks_of, no_loss, torn_seal, verify
 from ngwear.verify.base import Check
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from ngwear.stepper import Stepper
+from ngwear.loop.stepper import Stepper
 from ngwear.verify.stability_pair import scene
 
 

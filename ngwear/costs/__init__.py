@@ -1,1 +1,0 @@
-"""What accuracy costs: ladders of settings, their errors and times, and the cheapest that is accurate enough."""

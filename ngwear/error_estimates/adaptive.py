@@ -1,0 +1,198 @@
+"""A run that states an error no larger than was asked for: finer and finer levels, the last of which is kept.
+
+A level has two or four times as many elements across the contacts as the one before, and tolerances of stresses and
+wear that go along (``Accuracy``). Within it the run chooses the patch of each zone of a contact with each new mesh,
+the elements elsewhere by their stresses, and the jumps by what the wear steps err by. Levels are the companions of
+finer ones (``ngwear.error_estimates.companion``), so that the first alone needs some of its own; one, if that shows an error small
+enough. Where rubber has memory and its time step errs by more than half of what was asked for, the next level divides
+strokes into more parts, and needs companions of its own.
+
+The error meant is that of the greatest depth; others are stated beside it.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ngwear.error_estimates.companion import COARSER, COARSEST, FILE, coarser, leave, left_by, left_of, run_stated
+from ngwear.errors import ResultError
+from ngwear.files.files import CHECKPOINT, COMPLETED, OutFolder
+from ngwear.loop.run import Result
+from ngwear.parallel.workers import Worker
+from ngwear.results.readings import BY_TIME_STEP, DEPTH
+from ngwear.results.results import fingerprint
+from ngwear.scene.accuracy import MOST_ACROSS
+from ngwear.scene.scene import Scene
+
+LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
+FIRST, AT = 4.0, 0.01  # elements across of the first level when so much error is asked for
+COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0
+MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
+HALVINGS, MOST_PARTS = 2, 16  # of the time step at once; parts of a stroke
+ACROSS, PARTS, CPU = "elements across [-]", "parts of a stroke [-]", "CPU time [s]"
+Level = tuple[float, int]  # elements across, parts of a stroke
+BY_TIME = f"{DEPTH[:-4]} {BY_TIME_STEP}"
+
+
+def first_across(error: float) -> float:
+    """Elements across the contacts to begin with: 4 for 1 %, twice as many for half of it, from 2.5 to 32."""
+    return min(max(FIRST * 2.0 ** math.ceil(math.log2(AT / error) - 1e-9), COARSEST_FIRST), FINEST_FIRST)
+
+
+def next_across(across: float, stated: float | None, error: float) -> float | None:
+    """Elements across of the next level; None if a level is accurate enough, or there is no finer one.
+
+    Errors are taken as of first order, and at most two levels are taken at once, one where the error is not known.
+    """
+    if stated is not None and stated <= error:
+        return None
+    steps = 1 if stated is None else min(MOST_STEPS, math.ceil(math.log2(stated / error) - 1e-9))
+    while steps and across * COARSER**steps > MOST_ACROSS:
+        steps -= 1
+    return across * COARSER**steps if steps else None
+
+
+def next_parts(parts: int, by_time_step: float, error: float) -> int:
+    """Parts of a stroke for the next level: as many as let the time step err by half of the error, of first order."""
+    share = 2 * by_time_step / error
+    steps = min(HALVINGS, math.ceil(math.log2(share) - 1e-9)) if share > 1 else 0
+    return max(parts, min(parts * 2**steps, MOST_PARTS))
+
+
+def next_level(level: Level, stated: float | None, by_time_step: float, error: float) -> Level | None:
+    """Elements across and parts of a stroke of the level after one; None if that does, or there is no finer one."""
+    across, parts = level
+    if stated is not None and stated <= error:
+        return None
+    if stated is None:
+        finer = (next_across(across, None, error) or across, parts)
+    else:
+        left = error - min(by_time_step, 0.5 * error)
+        finer = (next_across(across, stated - by_time_step, left) or across, next_parts(parts, by_time_step, error))
+    return None if finer == level else finer
+
+
+def run_to_error(
+    scene: Scene,
+    *,
+    out: Path | str,
+    resume: bool = False,
+    progress: bool = False,
+    throw: bool = True,
+    worker: Worker | None = None,
+) -> Result:
+    """Run a scene whose ``accuracy.error`` is given on as fine a level as that takes.
+
+    Earlier levels stay in the folder's ``levels``. If the finest there is states more than was asked for, its summary
+    warns. ``summary["levels"]`` tells each level's error and seconds.
+
+    Parameters and errors as ``run``; the first level's companions run in ``worker``, if it is given.
+    """
+    folder, error = OutFolder(Path(out), CHECKPOINT, resume=resume), scene.accuracy.error
+    done = _earlier(folder, scene, resume=resume)
+    at = (first_across(error), scene.accuracy.parts)
+    if done:
+        at = _after(done[-1], error)
+    while True:
+        level = at_level(scene, *at)
+        _hand_down(folder, level, done)
+        told = _Told(done, at, error)
+        how = {"resume": resume, "progress": progress, "throw": throw, "told": told}
+        result, worker = run_stated(level, out=out, enough=error, worker=worker, **how), None
+        finer = _after(told.mine, error) if result.status == COMPLETED else None
+        if finer is None:
+            return result
+        done.append(told.mine | {"left": left_of(result)})
+        notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
+        folder.replace(NOTES, lambda file, notes=notes: file.write(notes))
+        _put_away(folder, told.mine)
+        at = finer
+
+
+def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:
+    """The scene with so many elements across its contacts, tolerances that go along, and strokes in so many parts."""
+    return replace(scene, accuracy=replace(scene.accuracy.with_across(across), parts=parts))
+
+
+def _after(done: Mapping[str, Any], error: float) -> Level | None:
+    return next_level((done[ACROSS], done[PARTS]), done[DEPTH], done[BY_TIME], error)
+
+
+class _Told:
+    """What a level's summary tells of what was asked for, and of all levels."""
+
+    def __init__(self, done: list[dict[str, Any]], level: Level, error: float) -> None:
+        self.done, self.level, self.error = done, level, error
+        self.mine: dict[str, Any] = {}
+
+    def __call__(self, summary: dict[str, Any]) -> None:
+        stated = summary["error estimates"]
+        known = any(name.startswith(f"{DEPTH[:-4]} by mesh") for name in stated)
+        run = {(entry[ACROSS], entry[PARTS]) for entry in self.done}
+        across, parts = self.level
+        cpu = summary[CPU]
+        for power, name in ((1, "companion"), (2, "coarsest companion")):
+            if (across / COARSER**power, parts) not in run:
+                cpu += summary.get(f"CPU time of the {name} [s]", 0.0)
+        self.mine = {ACROSS: across, PARTS: parts, DEPTH: stated[DEPTH] if known else None, CPU: round(cpu, 3)}
+        self.mine[BY_TIME] = stated.get(BY_TIME, 0.0)
+        levels = [{name: entry[name] for name in (ACROSS, PARTS, DEPTH, CPU)} for entry in (*self.done, self.mine)]
+        summary["error asked for [-]"], summary["levels"] = self.error, levels
+        summary["CPU time of all levels [s]"] = round(sum(entry[CPU] for entry in levels), 3)
+        if not (known and stated[DEPTH] <= self.error) and _after(self.mine, self.error) is None:
+            says = f"states an error of {stated[DEPTH]:.2g}" if known else "does not know its error"
+            summary["warnings"].append(f"the finest level {says}; {self.error:.2g} was asked for")
+
+
+def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:
+    """What is known of the levels that an earlier process has done."""
+    file = folder.path / NOTES
+    if not resume or not file.exists():
+        file.unlink(missing_ok=True)
+        shutil.rmtree(folder.path / LEVELS, ignore_errors=True)
+        return []
+    try:
+        notes = json.loads(file.read_text())
+        of, levels = notes["scene"], notes["levels"]
+    except (OSError, ValueError, KeyError) as error:
+        raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
+    if of != fingerprint(scene):
+        raise ResultError(f"{folder.path} holds a run of another scene (or of a changed one): give another folder")
+    _put_away(folder, levels[-1])
+    return levels
+
+
+def _place(folder: OutFolder, level: Mapping[str, Any]) -> Path:
+    """Where a level's files are put away."""
+    parts = "" if level[PARTS] == 1 else f" in {level[PARTS]} parts"
+    return folder.path / LEVELS / f"{level[ACROSS]:g}{parts}"
+
+
+def _put_away(folder: OutFolder, level: Mapping[str, Any]) -> None:
+    """Move a level's files to its own folder, the checkpoint last: begun but for that, it goes on after a kill."""
+    place = _place(folder, level)
+    if (place / CHECKPOINT).exists():
+        return
+    place.mkdir(parents=True, exist_ok=True)
+    files = [file for file in folder.path.iterdir() if file.is_file() and file.name != NOTES]
+    for file in sorted(files, key=lambda file: file.name == CHECKPOINT):
+        file.replace(place / file.name)
+
+
+def _hand_down(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> None:
+    """Leave what earlier levels and their companions have read off as that of a level's companions."""
+    for power, name in ((1, FILE), (2, COARSEST)):
+        companion = coarser(level, COARSER**power)
+        for entry in done:
+            if (entry[ACROSS], entry[PARTS]) == (companion.accuracy.across, companion.accuracy.parts):
+                leave(companion, folder.path / name, entry["left"])
+            for file in (FILE, COARSEST):
+                earlier = _place(folder, entry) / file
+                if left_by(companion, earlier) is not None:
+                    shutil.copy(earlier, folder.path / name)

@@ -1,0 +1,232 @@
+"""In which order a study's runs are made, and which are not begun because they would not fit the budget."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from ngwear.error_estimates.front import cheapest
+from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement, Setting, rung_of
+from ngwear.error_estimates.study import TARGETS, Study
+from ngwear.errors import SceneError
+
+CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended
+FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
+OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
+TOGETHER = 0.4  # of what is then left: what a run with all knobs at their finest may take
+BEYOND = 30.0  # s: what a run may take that only tells what one takes, where the budget did not even show that
+Measure = Callable[[Setting, float], Measurement]
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What is recommended for a target.
+
+    Attributes
+    ----------
+    target : float
+        Relative error of the main quantity.
+    setting : tuple of int or None
+        None if no setting is known to reach it.
+    measured : bool
+        Whether the setting itself has been run, or is put together from runs that differ in one knob each.
+    """
+
+    target: float
+    setting: Setting | None
+    measured: bool = False
+
+
+def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measure) -> Study:
+    """Climb the ladders from coarse to fine, the cheapest rung of all first, as far as the budget reaches.
+
+    Of a ladder whose coarsest rung is the scene's own, nothing is known until a finer one has been run: it goes first.
+
+    Parameters
+    ----------
+    ladders : tuple of Ladder
+        That of the mesh first.
+    main : str
+        The quantity that the targets are about.
+    budget : float
+        Wall seconds of all runs.
+    measure : callable
+        Of a setting and the seconds left; it stops a run that takes more.
+
+    Raises
+    ------
+    SceneError
+        If not even one run fits.
+    """
+    study = Study(ladders, main, tuple(ladder.own for ladder in ladders))
+    base = _climb_mesh(study, budget, measure)
+    study.base = rung_of(study.own, 0, base)
+    ended: set[int] = set()
+    first = study.runs.get(study.base)
+    ladder_budget = budget - min(CONFIRMING * budget, CONFIRMING_RUNS * (first.wall if first else budget))
+    while len(ended) < len(ladders):
+        waiting = {}
+        for k in set(range(len(ladders))) - ended:
+            rung = _next_rung(study, k)
+            if rung is None:
+                ended.add(k)
+            else:
+                waiting[k] = rung, study.next_seconds(k, rung)
+        if not waiting:
+            break
+        k = min(waiting, key=lambda k: (not _tells_nothing(study, k), waiting[k][1], k))
+        rung, seconds = waiting[k]
+        setting = rung_of(study.base, k, rung)
+        if not seconds <= ladder_budget - study.spent:
+            _leave_out(study, k, rung, seconds)
+            ended.add(k)
+        elif _run(study, setting, ladder_budget, measure).status == STOPPED:
+            ended.add(k)
+    return study
+
+
+def _run(study: Study, setting: Setting, budget: float, measure: Measure, *, share: float = 1.0) -> Measurement:
+    """Run a setting for at most a share of what is left; a run that is stopped is left out."""
+    run = measure(setting, share * (budget - study.spent))
+    study.runs[setting] = run
+    if run.status == STOPPED:
+        study.left_out[setting] = run.needed
+    return run
+
+
+def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
+    """Run the scene on a coarser mesh and on its own; return the rung on which the other ladders are climbed.
+
+    The coarsest mesh only if the coarser one is too slow: there, the wear may call for many more steps.
+    """
+    mesh = study.ladders[0]
+    first = max(mesh.own - 1, 0)
+    _run(study, rung_of(study.own, 0, first), budget, measure, share=FIRST)
+    rung = first - 1
+    while rung >= 0 and not study.rungs(0) and study.spent < budget:
+        _run(study, rung_of(study.own, 0, rung), budget, measure)
+        rung -= 1
+    if mesh.own > first and study.next_seconds(0, mesh.own) <= FIRST * (budget - study.spent):
+        _run(study, study.own, budget, measure)
+    _refuse_if_none_fits(study, budget, measure)
+    walls = {rung: run.wall for rung, run in study.rungs(0).items()}
+    left = OTHERS * (budget - study.spent)
+    fit = [rung for rung, wall in walls.items() if wall * _other_runs(study) <= left]
+    return max(fit) if fit else min(walls, key=lambda rung: walls[rung], default=mesh.own)
+
+
+def _other_runs(study: Study) -> float:
+    """What the other ladders take up to a rung beyond the scene's, over a run of the scene on the same mesh."""
+    runs = 1.0
+    for ladder in study.ladders[1:]:
+        own = ladder.values[ladder.own]
+        values = ladder.values[: ladder.own + 2]
+        runs += sum((own / value) ** ladder.growth if own and value else 1.0 for value in values)
+    return runs
+
+
+def _next_rung(study: Study, k: int) -> int | None:
+    """The coarsest rung of a ladder that has not been tried; None at its end."""
+    ladder = study.ladders[k]
+    tried = [i for i in range(len(ladder.values)) if rung_of(study.base, k, i) in study.runs]
+    rungs = study.rungs(k)
+    finest = max(rungs, default=-1)
+    left = [i for i in range(len(ladder.values)) if i not in tried and not ladder.own < i < finest]
+    failed_fine = any(i > ladder.own and not study.runs[rung_of(study.base, k, i)].ok for i in tried)
+    if not left or failed_fine or study.settled(k):
+        return None
+    if ladder.most_solves and 0 <= finest < left[0] and rungs[finest].solves >= ladder.most_solves:
+        return left[-1]  # finer tolerances of the jump have no jumps left to shorten
+    return left[0]
+
+
+def _tells_nothing(study: Study, k: int) -> bool:
+    """Whether all that there is of a ladder is the base."""
+    return study.ladders[k].own == 0 and len(study.rungs(k)) < 2
+
+
+def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:
+    """Note a rung for which there is no time, and the scene's own if it is finer still."""
+    study.left_out[rung_of(study.base, k, rung)] = seconds
+    own = study.ladders[k].own
+    if own > rung and rung_of(study.base, k, own) not in study.runs:
+        study.left_out[rung_of(study.base, k, own)] = study.next_seconds(k, own)
+
+
+def _refuse_if_none_fits(study: Study, budget: float, measure: Measure) -> None:
+    """SceneError if all that was run had to be stopped; it says what one run takes.
+
+    Where the budget ended before that could be told, a run beyond it of at most ``BEYOND`` seconds tells.
+    """
+    stopped = {setting: run for setting, run in study.runs.items() if run.status == STOPPED}
+    if not stopped or len(stopped) < len(study.runs):
+        return
+    setting = min(stopped, key=lambda s: (stopped[s].needed if math.isfinite(stopped[s].needed) else math.inf, s))
+    run, told = stopped[setting], ""
+    if not math.isfinite(run.needed):
+        run = measure(setting, BEYOND)
+        told = f", as a run of {_rounded(run.wall)} s beyond the budget tells"
+    needed = run.needed if run.status == STOPPED else run.wall
+    known = math.isfinite(needed)
+    takes = f"about {_rounded(needed)} s" if known else f"more than {_rounded(run.wall)} s"
+    give = f"give {_rounded(10 * needed)} s or more for a study" if known else "give many times as much"
+    label = study.ladders[0].labels[setting[0]]
+    raise SceneError(
+        "cost.budget", budget, f"does not reach for one run: on a mesh of {label} it takes {takes}{told}; {give}"
+    )
+
+
+def _rounded(seconds: float) -> str:
+    """Two digits, never as a power of ten."""
+    return f"{float(f'{seconds:.2g}'):g}"
+
+
+def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
+    """The cheapest setting for each target, run as far as the budget reaches: what fails its target gives way.
+
+    Before, all knobs at their finest together, if there is time: that tells whether their errors add up.
+
+    Parameters
+    ----------
+    study : Study
+        Gets the runs.
+    budget : float
+        Wall seconds of all runs.
+    measure : callable
+    """
+    if any(len(study.rungs(k)) < 2 for k in range(len(study.ladders))) or study.base not in study.runs:
+        return [Choice(target, None) for target in TARGETS]
+    if study.seconds(study.finest, wall=True) <= TOGETHER * (budget - study.spent):
+        _run(study, study.finest, budget, measure)
+    choices = [_confirmed(study, target, budget, measure) for target in TARGETS]
+    # A run for another target may have come out cheaper.
+    return [_cheapest_run(study, c.target, c.setting) if c.measured else c for c in choices]
+
+
+def _confirmed(study: Study, target: float, budget: float, measure: Measure) -> Choice:
+    unfit: set[Setting] = set()
+    while True:
+        setting = cheapest(
+            target,
+            [study.rungs(k) for k in range(len(study.ladders))],
+            lambda s: study.predicted_error(s, study.main),
+            study.seconds,
+            unfit,
+            study.own,
+        )
+        if setting is None:
+            return Choice(target, None)
+        if setting not in study.runs:
+            if study.seconds(setting, wall=True) > budget - study.spent:
+                return _cheapest_run(study, target, setting)
+            _run(study, setting, budget, measure)
+        if study.runs[setting].ok and study.error(setting, study.main) <= target:
+            return Choice(target, setting, measured=True)
+        unfit.add(setting)
+
+
+def _cheapest_run(study: Study, target: float, predicted: Setting) -> Choice:
+    """The cheapest run that reaches the target if there is one, else the setting that should."""
+    fit = [s for s in study.front() if study.error(s, study.main) <= target]
+    return Choice(target, fit[0], measured=True) if fit else Choice(target, predicted)

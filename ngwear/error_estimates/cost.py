@@ -1,0 +1,215 @@
+"""One verb: what accuracy costs in a scene, and which settings are accurate enough for the least time."""
+
+from __future__ import annotations
+
+import csv
+import io
+import itertools
+import json
+import math
+import tempfile
+import time
+from collections.abc import Callable
+from contextlib import nullcontext
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from ngwear import __version__
+from ngwear.error_estimates.climb import Choice, climb, confirm
+from ngwear.error_estimates.cost_runs import DEPTH, PEAK, Limited, Point, measure
+from ngwear.error_estimates.knobs import Knob, at, changes, knobs
+from ngwear.error_estimates.ladder import STOPPED, Measurement, Setting, told
+from ngwear.error_estimates.report import as_dict, table
+from ngwear.error_estimates.study import Study
+from ngwear.error_estimates.words import paragraph
+from ngwear.errors import SceneError
+from ngwear.files.files import GAVE_UP, OutFolder
+from ngwear.parallel.sweep import sweep
+from ngwear.parallel.workers import one_thread_pool
+from ngwear.scene.pin_scene import PinScene
+from ngwear.scene.scene import Scene
+from ngwear.units import UNITS
+
+RUNS = "runs"
+CSV, JSON, PNG = "cost.csv", "cost.json", "cost.png"
+
+
+@dataclass(frozen=True)
+class Cost:
+    """What a study has found.
+
+    Attributes
+    ----------
+    scene : str
+    budget : float
+        Wall seconds that were given.
+    study : Study
+        Runs, errors, orders, front.
+    choices : list of Choice
+        Recommended settings for 5 %, 1 % and 0.1 % of the main quantity.
+    written : list of dict or None
+        What to write into the scene's file for each; None where nothing is recommended.
+    """
+
+    scene: str
+    budget: float
+    study: Study
+    choices: list[Choice]
+    written: list[dict[str, Any] | None]
+
+    @property
+    def paragraph(self) -> str:
+        """In plain words."""
+        return paragraph(self.scene, self.study, self.choices, self.budget)
+
+    def as_dict(self) -> dict[str, Any]:
+        """As in ``cost.json``."""
+        head = {"scene": self.scene, "budget [s]": self.budget, "in words": self.paragraph}
+        found = as_dict(self.study, self.choices)
+        for choice, written in zip(found["recommended"], self.written, strict=True):
+            choice["change in the scene"] = written
+        return head | found | {"units": UNITS, "ngwear": __version__}
+
+    def table(self) -> list[dict[str, Any]]:
+        """As in ``cost.csv``: one row a run."""
+        return table(self.study)
+
+
+def cost(
+    scene: Scene | PinScene,
+    *,
+    budget: float,
+    folder: Path | str | None = None,
+    progress: bool = False,
+    figures: bool = True,
+) -> Cost:
+    """Run a scene with coarser and finer settings, and say what each setting's accuracy costs.
+
+    Each run has a process of one thread to itself, one after the other, so that its seconds and its memory are its own.
+    Decisions rest on the recorded seconds of the runs alone: a call with the same folder and budget repeats them and
+    runs nothing, one that was killed goes on, and one with a larger budget goes further. Where there is a sealed fluid,
+    the leak pressure is read as well, as if the scene asked for it.
+
+    Parameters
+    ----------
+    scene : Scene or PinScene
+    budget : float
+        Wall seconds of all runs, those found in the folder included.
+    folder : path or None
+        For ``cost.csv``, ``cost.json``, ``cost.png``, and in ``runs`` what each run found.
+    progress : bool
+        Show a progress bar.
+    figures : bool
+        Draw the figure into the folder.
+
+    Raises
+    ------
+    SceneError
+        If the budget is not positive, or too little for one run.
+    ResultError
+        If the folder cannot be used.
+    """
+    if not 0 < budget < math.inf:
+        raise SceneError("cost.budget", budget, "must be finite and greater than 0 s")
+    if isinstance(scene, Scene) and scene.fluid is not None:
+        scene = replace(scene, fluid=replace(scene.fluid, leak_pressure=True))
+    chosen = knobs(scene)
+    ladders = tuple(knob.ladder for knob in chosen)
+    main = DEPTH if isinstance(scene, PinScene) or scene.worn_edges else PEAK
+    out = None if folder is None else OutFolder(Path(folder), "", resume=True)
+    keep = tempfile.TemporaryDirectory() if out is None else nullcontext(out.path)
+    with keep as path, _Bar(budget, shown=progress) as bar:
+        run = _runner(scene, chosen, Path(path) / RUNS, bar.begin, bar.end)
+        study = climb(ladders, main, budget, run)
+        choices = confirm(study, budget, run)
+    written = [None if c.setting is None else changes(scene, at(scene, chosen, c.setting)) for c in choices]
+    found = Cost(scene.name, budget, study, choices, written)
+    if out is not None:
+        _write(out, found, figures=figures)
+    return found
+
+
+def _runner(
+    scene: Scene | PinScene,
+    chosen: tuple[Knob, ...],
+    folder: Path,
+    begin: Callable[[str], None],
+    end: Callable[[float], None],
+) -> Callable[[Setting, float], Measurement]:
+    """How a setting is measured: by the sweep's processes, or from the folder."""
+    if isinstance(scene, Scene):
+        scene = replace(
+            scene, contour=replace(scene.contour)
+        )  # without what it has worked out: the digest is the data's
+    ladders = tuple(knob.ladder for knob in chosen)
+
+    def run(setting: Setting, left: float) -> Measurement:
+        begin(", ".join(told(ladders, setting).values()))
+        try:
+            there = at(scene, chosen, setting)
+        except SceneError as error:
+            return Measurement(status=GAVE_UP, message=str(error))
+        for attempt in itertools.count():
+            found, restored = _measured(Point(there, attempt), left, folder)
+            if not (restored and _worth_another(found, left)):
+                break
+        end(found.wall)
+        return found
+
+    return run
+
+
+def _worth_another(found: Measurement, left: float) -> bool:
+    """Whether a run that was stopped in an earlier call has time enough now."""
+    if found.status != STOPPED:
+        return False
+    return left > (2 * found.wall if math.isnan(found.needed) else max(found.needed, 1.05 * found.wall))
+
+
+def _measured(point: Point, left: float, folder: Path) -> tuple[Measurement, bool]:
+    start = time.perf_counter()
+    with one_thread_pool(1) as workers:
+        (outcome,) = sweep(measure, [point], executor=Limited(workers, left), folder=folder, resume=True)
+    if outcome.failure is None:
+        return outcome.result, outcome.restored
+    message = f"{outcome.failure.kind}: {outcome.failure.message}"
+    return Measurement(status=GAVE_UP, message=message, wall=time.perf_counter() - start), False
+
+
+def _write(out: OutFolder, found: Cost, *, figures: bool) -> None:
+    text = io.StringIO()
+    rows = found.table()
+    writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    out.replace(CSV, lambda file: file.write(text.getvalue().encode()))
+    out.replace(JSON, lambda file: file.write((json.dumps(found.as_dict(), indent=2) + "\n").encode()))
+    if figures and found.study.front():
+        from ngwear.error_estimates.cost_figure import draw_cost
+
+        figure = draw_cost(found.scene, found.study, found.choices)
+        out.replace(PNG, lambda file: figure.savefig(file, dpi=150, format="png"))
+
+
+class _Bar:
+    """Progress on the terminal: seconds of the budget, and the run under way."""
+
+    def __init__(self, budget: float, *, shown: bool) -> None:
+        self._budget, self._shown = budget, shown
+
+    def __enter__(self) -> _Bar:
+        from tqdm import tqdm
+
+        shape = "{desc}: {percentage:3.0f}% of the budget |{bar}| {n:.0f}/{total:.0f} s {postfix}"
+        self._bar = tqdm(total=self._budget, desc="cost", disable=not self._shown, dynamic_ncols=True, bar_format=shape)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()
+
+    def begin(self, setting: str) -> None:
+        self._bar.set_postfix_str(setting)
+
+    def end(self, seconds: float) -> None:
+        self._bar.update(min(seconds, self._budget - self._bar.n))  # beyond its total tqdm forgets the total

@@ -1,0 +1,132 @@
+"""Figure of a cost study: error against seconds of every run, and what each knob errs by alone."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from ngwear.error_estimates.climb import Choice
+from ngwear.error_estimates.ladder import rung_of
+from ngwear.error_estimates.report import kind_of
+from ngwear.error_estimates.study import TARGETS, Study
+from ngwear.error_estimates.words import name_of
+from ngwear.plots.style import COLOURS
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MARKERS = ("o", "s", "^", "D", "v", "P")
+LEAST = 1e-5  # errors below, or none at all, are drawn here
+
+
+def draw_cost(scene: str, study: Study, choices: Sequence[Choice]) -> Figure:
+    """Whole error of each run with the Pareto front, beside the error by each knob alone.
+
+    Parameters
+    ----------
+    scene : str
+        For the title.
+    study : Study
+    choices : sequence of Choice
+        The recommended settings are marked.
+    """
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.ticker import LogLocator
+
+    figure = Figure(figsize=(13, 5.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    whole, alone = figure.subplots(1, 2, sharex=True)
+    _draw_runs(whole, study, choices)
+    _draw_ladders(alone, study)
+    figure.suptitle(f"{scene}: error of the {name_of(study.main)} against processor time")
+    for axis in (whole, alone):
+        axis.margins(0.13)
+        axis.set_xlabel("processor time of the run [s]")
+        axis.grid(alpha=0.25, which="both")
+        axis.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.xaxis.set_major_formatter("{x:g}")
+        axis.xaxis.set_minor_formatter("")
+    return figure
+
+
+def _draw_runs(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
+    shown = {s: run for s, run in study.runs.items() if run.ok and math.isfinite(study.error(s, study.main))}
+    errors = {s: max(study.error(s, study.main), LEAST) for s in shown}
+    kinds = [ladder.name for ladder in study.ladders]
+    styles = dict(zip([*kinds, "combination", "all"], [*range(len(kinds)), None, None], strict=True))
+    for kind, number in styles.items():
+        of_kind = [s for s in shown if kind_of(study, s) == kind]
+        colour = "0.35" if number is None else COLOURS[number % len(COLOURS)]
+        marker = {"combination": "P", "all": "h"}.get(kind, MARKERS[(number or 0) % len(MARKERS)])
+        label = {"combination": "several knobs changed", "all": "base of the ladders"}.get(kind, f"{kind} changed")
+        if of_kind:
+            x, y = [shown[s].cpu for s in of_kind], [errors[s] for s in of_kind]
+            axis.loglog(x, y, marker, color=colour, ms=7, alpha=0.85, label=label)
+    front = study.front()
+    last = max(run.cpu for run in shown.values())  # to the right, nothing is better either
+    x, y = [shown[s].cpu for s in front], [errors[s] for s in front]
+    axis.step([*x, 1.1 * last], [*y, y[-1]], "k-", where="post", lw=1.3, label="Pareto front")
+    if study.own in shown:
+        at = shown[study.own].cpu, errors[study.own]
+        axis.plot(*at, "o", ms=15, mfc="none", mec="k", mew=1.2, label="the scene as it stands")
+    _mark_targets(axis, study, choices)
+    axis.set_ylabel("relative error, all knobs together [-]")
+    axis.set_title("every run", fontsize=11)
+    _legend(axis)
+
+
+def _mark_targets(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
+    for target in TARGETS:
+        axis.axhline(target, color="0.5", lw=0.8, ls="--")
+        axis.annotate(
+            f"{100 * target:g} %", (1.0, target), xycoords=("axes fraction", "data"), xytext=(-3, 2),
+            textcoords="offset points", ha="right", fontsize=8, color="0.35",
+        )  # fmt: skip
+    goals: dict[tuple[float, float], list[str]] = {}
+    for choice in choices:
+        if choice.setting is not None and choice.measured:
+            at = study.runs[choice.setting].cpu, max(study.error(choice.setting, study.main), LEAST)
+            goals.setdefault(at, []).append(f"{100 * choice.target:g} %")
+    for k, (at, names) in enumerate(goals.items()):
+        axis.annotate(
+            f"for {', '.join(names)}", at, xytext=(10, -16 - 14 * k), textcoords="offset points", fontsize=9,
+            arrowprops={"arrowstyle": "-", "lw": 0.6},
+        )  # fmt: skip
+
+
+def _draw_ladders(axis: Axes, study: Study) -> None:
+    for k, ladder in enumerate(study.ladders):
+        rungs = study.rungs(k)
+        if len(rungs) < 2:
+            continue
+        others = [i for i in rungs if study.rung_error(k, i, study.main)]  # those that differ from the reference
+        x = [rungs[i].cpu for i in others]
+        y = [max(study.rung_error(k, i, study.main) or 0.0, LEAST) for i in others]
+        order = study.order(k, study.main)
+        told = "" if order is None else f", observed order {order:.1f}"
+        colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
+        reference = f"against {ladder.labels[max(rungs)]}{told}"
+        axis.loglog(x, y, marker + "-", color=colour, ms=6, lw=1.0, label=f"{ladder.name}, {reference}")
+        for n, (i, place) in enumerate(zip(others, zip(x, y, strict=True), strict=True)):
+            text = ladder.labels[i].removeprefix("wear_error ").removeprefix("stress_error ")
+            own = i == ladder.own and rung_of(study.base, k, i) in study.runs
+            foot, top = n + 1 < len(y) and y[n] < y[n + 1], n > 0 and y[n - 1] < y[n]
+            below = foot or (i % 2 == 1 and not top)  # neighbours' labels keep clear of each other, and of the line
+            axis.annotate(
+                text, place, xytext=(5, -11 if below else 5), textcoords="offset points", fontsize=7.5, color=colour,
+                fontweight="bold" if own else "normal",
+            )  # fmt: skip
+    axis.set_ylabel("relative difference from the ladder's finest run [-]")
+    axis.set_title("each knob alone (bold: the scene's value)", fontsize=11)
+    _legend(axis)
+
+
+def _legend(axis: Axes) -> None:
+    """Below the points: it would hide the smallest errors."""
+    axis.margins(0.13)
+    low, high = axis.get_ylim()
+    axis.set_ylim(low * (low / high) ** 0.4, high)
+    axis.legend(fontsize=8, loc="lower left")

@@ -1,0 +1,176 @@
+"""One run of a study in a process of its own: what users read, and what it took."""
+
+from __future__ import annotations
+
+import functools
+import math
+import signal
+import time
+from collections.abc import Callable
+from concurrent.futures import Executor, Future
+from dataclasses import dataclass, replace
+from types import FrameType
+from typing import Any
+
+from ngwear.error_estimates.ladder import STOPPED, Measurement
+from ngwear.errors import NgwearError
+from ngwear.files.files import COMPLETED, GAVE_UP, peak_memory
+from ngwear.results.results import LEAK
+from ngwear.scene.pin_scene import PinScene
+from ngwear.scene.scene import Scene
+
+DEPTH, PEAK = "maximum depth [mm]", "peak pressure [MPa]"
+NO_TIME = "no time was left"
+
+
+class OutOfTimeError(Exception):
+    """A run has used up the time that was left."""
+
+
+@dataclass
+class _Clock:
+    """When this process's run was sent off, by the system's clock, and whether its time is over."""
+
+    sent: float = math.nan
+    over: bool = False
+
+    def check(self) -> None:
+        if self.over:
+            raise OutOfTimeError
+
+
+_clock = _Clock()
+
+
+class Limited(Executor):
+    """Another executor whose calls are stopped after so many wall seconds, those of its process' start included."""
+
+    def __init__(self, executor: Executor, seconds: float) -> None:
+        self._executor, self._seconds = executor, seconds
+
+    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
+        call = functools.partial(function, *args, **kwargs)
+        return self._executor.submit(_timed, time.time(), self._seconds, call)
+
+
+def _timed(sent: float, seconds: float, call: Callable[[], Any]) -> Any:
+    def stop(_: int, __: FrameType | None) -> None:
+        _clock.over = True
+        _clock.check()
+
+    _clock.sent, _clock.over = sent, False
+    signal.signal(signal.SIGALRM, stop)
+    try:
+        try:
+            signal.setitimer(signal.ITIMER_REAL, max(seconds - (time.time() - sent), 1e-3))
+            return call()
+        finally:
+            signal.setitimer(signal.ITIMER_REAL, 0.0)
+    except OutOfTimeError:  # before or after all that ``measure`` watches over: a budget may end at once
+        cpu, wall = time.process_time(), time.time() - sent
+        return Measurement(status=STOPPED, message=NO_TIME, cpu=cpu, wall=wall, memory=peak_memory())
+    finally:
+        _clock.sent, _clock.over = math.nan, False
+
+
+@dataclass(frozen=True)
+class Point:
+    """A scene to be run, for the first time or once more since it was stopped."""
+
+    scene: Scene | PinScene
+    attempt: int = 0
+
+
+@dataclass
+class _Progress:
+    """Fraction of the run that is done, and when it was."""
+
+    begun: float = 0.0
+    done: float = 0.0
+    last: float = 0.0
+
+    def needed(self, total: float) -> float:
+        """About how many seconds all would take; nan if that cannot be told."""
+        return self.begun + (total - self.begun) / self.done if self.done > 0 else math.nan
+
+
+def measure(point: Point) -> Measurement:
+    """Run a scene and pick what users read; a run that gives up, or is stopped, comes back as such.
+
+    The alarm may go off inside of a compiled library, which turns it into an error of its own, or drops it: so the
+    clock tells whether a run was stopped, not the error that it ended with.
+    """
+    progress = _Progress()
+    sent = time.time() if math.isnan(_clock.sent) else _clock.sent
+    scene = point.scene
+    try:
+        found = _slide(scene, progress, sent) if isinstance(scene, PinScene) else _wear(scene, progress, sent)
+    except NgwearError as error:
+        found = Measurement(status=GAVE_UP, message=str(error))
+    except Exception as error:  # a mesher or a solver outside of ngwear: kept as well, or each call would try again
+        found = Measurement(status=GAVE_UP, message=f"{type(error).__name__}: {error}")
+    if _clock.over and found.status == GAVE_UP:
+        found = Measurement(status=STOPPED, message=NO_TIME, needed=progress.needed(time.time() - sent))
+    memory = peak_memory()
+    return replace(found, cpu=time.process_time(), wall=time.time() - sent, memory=memory)
+
+
+def _wear(scene: Scene, progress: _Progress, sent: float) -> Measurement:
+    from ngwear.loop.run import run
+
+    def on_step(state: Any) -> None:
+        _clock.check()
+        if progress.begun == 0.0:
+            progress.begun = time.time() - sent
+        progress.done = state.strokes / max(scene.program.strokes, 1)
+
+    result = run(scene, throw=False, figures=False, on_step=on_step)
+    values = wear_values(scene, result.summary, result.recorder.rows) if result.error is None else {}
+    solves = result.summary.get("solves", 0)
+    return Measurement(status=result.status, message=result.message, values=values, solves=solves)
+
+
+def wear_values(scene: Scene, summary: dict[str, Any], rows: list[dict[str, Any]]) -> dict[str, float]:
+    """What users read of a run: worn depth and amount, and the highest of each kind of stroke at the end.
+
+    Parameters
+    ----------
+    scene : Scene
+    summary : dict
+        As in ``summary.json``.
+    rows : list of dict
+        As in ``series.csv``.
+    """
+    last = rows[-len(scene.program.cycle) :]
+    amount = "worn volume [mm^3]" if scene.axisymmetric else "worn area [mm^2]"
+    found = {name: float(summary[name]) for name in (DEPTH, amount) if scene.worn_edges}
+    found |= {name: float(summary[name]) for name in (PEAK, LEAK) if name in summary}
+    for spec in scene.contacts:
+        width, force = f"{spec.name} contact width [mm]", f"{spec.name} friction force x ["
+        if not (spec.wears or (spec.slides and spec.friction_law is not None)):
+            continue
+        if width in last[-1]:
+            found[width] = max(row[width] for row in last)
+        unit = next((name.removeprefix(force) for name in last[-1] if name.startswith(force)), None)
+        if unit is not None:
+            x, y = (f"{spec.name} friction force {axis} [{unit}" for axis in "xy")
+            found[f"{spec.name} friction force [{unit}"] = max(math.hypot(row[x], row[y]) for row in last)
+    return found
+
+
+def _slide(scene: PinScene, progress: _Progress, sent: float) -> Measurement:
+    from ngwear.sliding.pin import slide_pin
+    from ngwear.sliding.run_pin import row
+
+    progress.begun, rows = time.time() - sent, []
+    for number, speed in enumerate(scene.speeds):
+        _clock.check()
+        rows.append(row(*slide_pin(scene.pin, speed, mesh=scene.mesh)))
+        progress.done = (number + 1) / len(scene.speeds)
+    values = {
+        DEPTH: max(r["penetration [mm]"] for r in rows),
+        PEAK: max(r["peak pressure [MPa]"] for r in rows),
+        "contact area [mm²]": max(r["contact area [mm²]"] for r in rows),
+        "friction force [N]": max(r["friction coefficient [-]"] for r in rows) * scene.pin.load,
+    }
+    return Measurement(status=COMPLETED, values=values, solves=int(sum(r["solves [-]"] for r in rows)))

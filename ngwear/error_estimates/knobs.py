@@ -1,0 +1,286 @@
+"""The knobs of a scene that trade time for error, as ladders, and the scene at any of their rungs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+from ngwear.error_estimates.ladder import Ladder, Setting
+from ngwear.materials import Folding
+from ngwear.scene.accuracy import ORDERS
+from ngwear.scene.contradictions import why_not_order
+from ngwear.scene.pin_scene import PinScene
+from ngwear.scene.scene import Scene
+
+MESH = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # times the scene's element edge
+JUMPS = (16.0, 4.0, 1.0, 0.25, 0.0625)  # times its wear_error: the jump changes with the square root
+STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)
+BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # as far as the track leaves room
+PARTS = (1, 2, 4, 8)
+FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)
+HIGHER_ORDER = 0.25  # of what order 1 differs from order 2 by: order 2 errs less, by 1/4 and 1/200 on seal and shaft
+EACH_BEGINS = 0.02  # wear_error from which jumps are coarsened in a scene that solves each stroke
+AnyScene = Scene | PinScene
+
+
+@dataclass(frozen=True)
+class Knob:
+    """A ladder and what a rung of it does to a scene."""
+
+    ladder: Ladder
+    apply: Callable[[Any, float], Any]
+
+
+def knobs(scene: AnyScene) -> tuple[Knob, ...]:
+    """The knobs that the scene's solver really has, the mesh first.
+
+    Increments of the load are none: where all of a contact slides, an equilibrium does not depend on the way to it, and
+    where friction sticks, hardly: with increments of a quarter the clamps of the shipped torn seal carry as much to
+    1e-5 (``tests/unit/test_cost_runs.py``, slow). Only memory has a time step.
+    """
+    if isinstance(scene, PinScene):
+        return _pin_knobs(scene)
+    found = [_mesh(scene)]
+    if scene.worn_edges and scene.program.strokes > 2 * len(scene.program.cycle):
+        found.append(_jumps(scene))
+    if scene.deactivation is None:
+        found.append(_stress(scene))
+    found += _orders(scene)
+    if scene.arms is not None:
+        found.append(_time_step(scene))
+    if scene.prony is not None:
+        found += _arms(scene.accuracy.folding_error, lambda tolerance: _foldings_of_wear(scene, tolerance))
+    return tuple(found)
+
+
+def at(scene: AnyScene, chosen: Sequence[Knob], setting: Setting) -> Any:
+    """The scene at a setting.
+
+    Raises
+    ------
+    SceneError
+        If the scene cannot have it.
+    """
+    for knob, rung in zip(chosen, setting, strict=True):
+        if rung != knob.ladder.own:
+            scene = knob.apply(scene, knob.ladder.values[rung])
+    return scene
+
+
+def changes(scene: AnyScene, other: AnyScene) -> dict[str, Any]:
+    """What to write into a scene's file to make it another, by place; nothing if they are alike."""
+    tables = {"accuracy": "mesh"} if isinstance(scene, PinScene) else {"accuracy": "accuracy", "wear": "wear"}
+    found: dict[str, Any] = {}
+    for table, attribute in tables.items():
+        old, new = getattr(scene, attribute), getattr(other, attribute)
+        places = {field.name: getattr(new, field.name) for field in fields(new)}
+        found |= {f"{table}.{name}": value for name, value in places.items() if value != getattr(old, name)}
+    return found
+
+
+def _scaled(
+    name: str,
+    column: str,
+    own: float,
+    factors: Sequence[float],
+    growth: float,
+    *,
+    unit: str = "",
+    below: float = float("inf"),
+    smooth: bool = True,
+) -> Ladder:
+    """Multiples of the scene's value."""
+    values = [own * factor for factor in factors if factor == 1.0 or own * factor < below]
+    return Ladder(
+        name=name,
+        column=column,
+        values=tuple(values),
+        labels=tuple(f"{value:.4g}{unit}" for value in values),
+        own=values.index(own),
+        growth=growth,
+        smooth=smooth,
+    )
+
+
+def _mesh(scene: Scene) -> Knob:
+    """Element edges near and far by one factor, those of the mounting mesh as far as they must follow."""
+    if scene.accuracy.across is not None:
+        ladder = _scaled("element edge", "element edge over contact width [-]", 1 / scene.accuracy.across, MESH, 1.2)
+        ladder = replace(ladder, labels=tuple(f"{1 / value:.3g} elements across" for value in ladder.values))
+        return Knob(ladder, lambda scene, edge: replace(scene, accuracy=replace(scene.accuracy, across=1 / edge)))
+    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.patch, MESH, 1.2, unit=" mm")
+
+    def apply(scene: Scene, patch: float) -> Scene:
+        old = scene.accuracy
+        coarse, mounting = old.coarse * patch / old.patch, max(old.mounting, patch)
+        return replace(scene, accuracy=replace(old, patch=patch, coarse=coarse, mounting=mounting))
+
+    return Knob(ladder, apply)
+
+
+def _jumps(scene: Scene) -> Knob:
+    """Tolerances of the cycle jump, and each stroke solved at the end."""
+    each = scene.wear.step == "each"
+    start = EACH_BEGINS if each else scene.accuracy.wear_error
+    values = [start * factor for factor in JUMPS if start * factor < 1] + [0.0]
+    ladder = Ladder(
+        name="jumps over strokes",
+        column="accuracy.wear_error [-]",
+        values=tuple(values),
+        labels=(*(f"wear_error {value:.4g}" for value in values[:-1]), "each stroke solved"),
+        own=len(values) - 1 if each else values.index(start),
+        growth=0.5,
+        most_solves=scene.program.strokes,
+    )
+
+    def apply(scene: Scene, error: float) -> Scene:
+        if error == 0:
+            return replace(scene, wear=replace(scene.wear, step="each"))
+        wear = replace(scene.wear, step="jump")
+        old = scene.accuracy
+        depth = old.depth_error if old.depth_error == 1.0 else min(1.0, old.depth_error * error / old.wear_error)
+        accuracy = replace(old, wear_error=error, longest_jump=None, depth_error=depth)
+        return replace(scene, wear=wear, accuracy=accuracy)
+
+    return Knob(ladder, apply)
+
+
+def _stress(scene: Scene) -> Knob:
+    own = scene.accuracy.stress_error
+    ladder = _scaled("stress criterion", "accuracy.stress_error [-]", own, STRESS, 0.3, below=1.0)
+    ladder = replace(ladder, labels=tuple(f"stress_error {label}" for label in ladder.labels))
+    return Knob(ladder, lambda scene, error: replace(scene, accuracy=replace(scene.accuracy, stress_error=error)))
+
+
+def _orders(scene: Scene) -> list[Knob]:
+    """Orders that the elements can have, on about the scene's own elements; the value is one over the order.
+
+    On elements on which order m has a stress error of e, order k has one of about e^(k/m): so the criterion goes along.
+    Else order 1 would be tried on a mesh many times as fine.
+
+    Measured with ``ngwear run`` on the shipped scenes, ``accuracy.order`` and ``accuracy.stress_error`` as said here
+    (0.224, 0.05, 0.0112): processor time, and maximum depth and peak pressure against order 3. The shaft: 3.7, 4.2 and
+    6.7 s; order 1 errs by 0.21 % and 1.1 %, order 2 by 0.001 % and 0.01 %. The seal: 21, 30 and 56 s (order 3 at 0.05);
+    order 1 errs by 1.1 % and 3.1 %, order 2 by 0.27 % and 0.3 %. The ends of a contact of order 1 lie within an element
+    only: the seal's width is 17 % off. At equal error order 2 is the cheapest: on the shaft's edges of 0.1 mm its depth
+    errs by 0.02 % in 2.1 s, that of order 3 by 0.05 % in 2.8 s.
+    """
+    orders = [order for order in ORDERS if why_not_order(scene, order) is None]
+    if len(orders) < 2:
+        return []
+    ladder = Ladder(
+        name="element order",
+        column="one over the element order [-]",
+        values=tuple(1 / order for order in orders),
+        labels=tuple(f"order {order}" for order in orders),
+        own=orders.index(scene.accuracy.order),
+        growth=1.0,
+        smooth=False,
+        remaining=HIGHER_ORDER,
+    )
+
+    def apply(scene: Scene, value: float) -> Scene:
+        old, order = scene.accuracy, round(1 / value)
+        return replace(scene, accuracy=replace(old, order=order, stress_error=old.stress_error ** (order / old.order)))
+
+    return [Knob(ladder, apply)]
+
+
+def _time_step(scene: Scene) -> Knob:
+    """Parts of a stroke, each with a solve of its own; the value is one over them."""
+    parts = sorted({*PARTS, scene.accuracy.parts})
+    ladder = Ladder(
+        name="time step",
+        column="time step over stroke [-]",
+        values=tuple(1 / n for n in parts),
+        labels=tuple(f"{n} part{'' if n == 1 else 's'} a stroke" for n in parts),
+        own=parts.index(scene.accuracy.parts),
+        growth=0.9,
+        smooth=False,
+    )
+    return Knob(ladder, lambda s, step: replace(s, accuracy=replace(s.accuracy, parts=round(1 / step))))
+
+
+def _refolded(scene: Scene, tolerance: float) -> Scene:
+    return replace(scene, accuracy=replace(scene.accuracy, folding_error=tolerance))
+
+
+def _foldings_of_wear(scene: Scene, tolerance: float) -> list[Folding]:
+    folding = _refolded(scene, tolerance).folding
+    return [] if folding is None else [folding]
+
+
+def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: bool = False) -> list[Knob]:
+    """Tolerances of folding that differ in the arms kept, at least one if ``needed``; no knob if none does."""
+    found: dict[tuple[tuple[float, ...], ...], float] = {}
+    for tolerance in (own, *FOLDING):
+        kept = tuple(f.kept.times for f in folded(tolerance))
+        if all(kept) or not needed:
+            found.setdefault(kept, tolerance)
+    values = sorted(found.values(), reverse=True)
+    if len(values) < 2 or own not in values:
+        return []
+    counts = [max(len(f.kept.times) for f in folded(value)) for value in values]
+    labels = [f"{n} arm{'' if n == 1 else 's'}" for n in counts]
+    if len(set(labels)) < len(labels):
+        labels = [f"{label} (folding_error {value:.4g})" for label, value in zip(labels, values, strict=True)]
+    ladder = Ladder(
+        name="arms of the memory",
+        column="accuracy.folding_error [-]",
+        values=tuple(values),
+        labels=tuple(labels),
+        own=values.index(own),
+        growth=0.05,
+        smooth=False,
+    )
+
+    def apply(scene: AnyScene, tolerance: float) -> AnyScene:
+        if isinstance(scene, PinScene):
+            return replace(scene, mesh=replace(scene.mesh, folding_error=tolerance))
+        return _refolded(scene, tolerance)
+
+    return [Knob(ladder, apply)]
+
+
+def _pin_knobs(scene: PinScene) -> tuple[Knob, ...]:
+    mesh, series = scene.mesh, scene.pin.series
+
+    def edges(scene: PinScene, patch: float) -> PinScene:
+        return replace(scene, mesh=replace(scene.mesh, patch=patch, coarse=mesh.coarse * patch / mesh.patch))
+
+    def block(scene: PinScene, shortness: float) -> PinScene:
+        reach = 1 / shortness
+        return replace(scene, mesh=replace(scene.mesh, reach=reach, beside=mesh.beside * reach / mesh.reach))
+
+    found = [
+        Knob(_scaled("element edge", "element edge [mm]", mesh.patch, MESH[1:-1], 2.0, unit=" mm"), edges),
+        Knob(
+            _scaled("column of the memory", "column of the memory [mm]", mesh.column, MESH[1:-1], 0.7, unit=" mm"),
+            lambda scene, column: replace(scene, mesh=replace(scene.mesh, column=column)),
+        ),
+        Knob(_block_ladder(scene), block),
+    ]
+    return (*found, *_arms(mesh.folding_error, lambda t: _foldings(scene, series, t), needed=True))
+
+
+def _foldings(scene: PinScene, series: Any, tolerance: float) -> list[Folding]:
+    mesh = replace(scene.mesh, folding_error=tolerance)
+    return [mesh.folding(series, speed) for speed in scene.speeds]
+
+
+def _block_ladder(scene: PinScene) -> Ladder:
+    """How far the block reaches, over the sheet's thickness; the value is one over it, which falls as for any knob."""
+    mesh, room = scene.mesh, scene.pin.track_radius / scene.pin.thickness
+    factors = [f for f in BLOCK if f <= 1 or (f * mesh.beside < room and f * mesh.reach < math.pi * room)]
+    reaches = [mesh.reach * factor for factor in factors]
+    return Ladder(
+        name="size of the block",
+        column="thickness over the block's reach [-]",
+        values=tuple(1 / r for r in reaches),
+        labels=tuple(f"reach {r:.3g}" for r in reaches),
+        own=factors.index(1.0),
+        growth=0.7,
+        smooth=False,
+    )

@@ -1,0 +1,1 @@
+"""What a scene simulates, what it leaves out, and whether that matters."""

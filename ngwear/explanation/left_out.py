@@ -1,0 +1,271 @@
+"""What a wear scene leaves out, and whether that matters, from its contact pressures."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+from ngwear.explanation import adhesion, film, heat, inertia, relaxation
+from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.pressing import Pressing, Strip
+from ngwear.explanation.verdict import Verdict, onset
+from ngwear.explanation.warming import warming
+from ngwear.loop.drift import friction_range
+from ngwear.materials.library import FILLED_ARMS, FILLED_LONG_TERM, FILLED_TIMES
+from ngwear.scene.scene import Scene
+
+SHARE = 0.1  # of a load or a width: from which on it counts
+RELAXED = 0.05  # of the stiffness
+UNSAID = "the strokes have no speed"
+
+
+def left_out(scene: Scene, pressing: Pressing, *, remembers: bool, assumed: Assumed) -> dict[str, Verdict]:
+    """Verdict on each effect that the scene does not have; ``remembers`` tells whether its friction may stick."""
+    found: dict[str, Callable[[], Verdict]] = {}
+    touching = [s for s in pressing.strips if s.contact.slides] or list(pressing.strips)
+    rubbing = [s for s in touching if s.contact.slides and s.contact.friction_law is not None]
+    hidden = pressing.missing or "no surface touches the part on the mesh that was tried"
+
+    def of(strips: list[Strip], judge: Callable[[Scene, list[Strip], Assumed], Verdict]) -> Verdict:
+        if strips:
+            return judge(scene, strips, assumed)
+        return Verdict(words=f"there is no contact pressure to judge by: {hidden}", matters=None)
+
+    frictions = [c for c in scene.contacts if c.friction_law is not None]
+    sliding = [c for c in frictions if c.slides]
+    if scene.prony is None:
+        found["viscosity"] = lambda: _viscosity(scene)
+    if not remembers:
+        found["stick-slip"] = lambda: _stick_slip(scene)
+    found["heat"] = lambda: of(rubbing, _heat) if sliding else _NO_HEAT
+    found["adhesion"] = lambda: of(touching, _adhesion)
+    found["inertia"] = lambda: _inertia(scene, assumed)
+    found["fluid film"] = lambda: of(touching, _film)
+    if not frictions:
+        found["friction"] = lambda: of(touching, _friction)
+    if not scene.worn_edges:
+        found["wear"] = lambda: of(touching, _wear)
+    if scene.fluid is None:
+        found["fluid pressure"] = lambda: of(touching, _fluid)
+    return {name: judge() for name, judge in found.items()}
+
+
+_NO_HEAT = Verdict(words="no surface that slides has friction: there is no frictional heat", matters=False)
+
+
+def _main(strips: list[Strip]) -> Strip:
+    return max(strips, key=lambda strip: strip.peak)
+
+
+def _where(strip: Strip) -> str:
+    x, y = strip.place
+    return f"'{strip.contact.name}' at ({x:.3g}, {y:.3g}) mm, {strip.stroke.name} stroke"
+
+
+def _finite(numbers: dict[str, float]) -> dict[str, float]:
+    return {name: value for name, value in numbers.items() if math.isfinite(value)}
+
+
+def _viscosity(scene: Scene) -> Verdict:
+    """By Deborah's number, relaxation time over stroke; the library's filled rubber stands in for an unknown one."""
+    ratios = [modulus / FILLED_LONG_TERM for modulus in FILLED_ARMS]
+    settled = relaxation.relaxed_after(ratios, FILLED_TIMES, RELAXED)
+    travel = min(stroke.travel for stroke in scene.program.cycle)
+    shortest = min(stroke.duration for stroke in scene.program.cycle)
+    numbers = {"speed below which the library's filled rubber has relaxed [mm/s]": travel / settled}
+    unknown = "the material gives no relaxation time tau for Deborah's number tau / D of a stroke that takes D"
+    needed = (
+        f"it relaxes to within {RELAXED:.0%} in {settled:.3g} s, in strokes slower than {travel / settled:.3g} mm/s. "
+        "Take moduli that were measured as slowly as the part moves, or give the material a memory ([material.prony])"
+    )
+    if math.isinf(shortest):
+        words = f"{unknown}, and {UNSAID}. Were it the library's filled rubber, {needed}"
+        return Verdict(words=words, matters=None, numbers=numbers)
+    ratio = relaxation.stiffness(ratios, FILLED_TIMES, shortest)
+    numbers |= {"shortest stroke D [s]": shortest, "G(D) / G_inf of the library's filled rubber [-]": ratio}
+    words = (
+        f"{unknown}. Were it the library's filled rubber, it would be {ratio:.3g} times as stiff after D = "
+        f"{shortest:.3g} s as in the long term; {needed}"
+    )
+    return Verdict(words=words, matters=None, numbers=numbers)
+
+
+def _stick_slip(scene: Scene) -> Verdict:
+    frictions = [c for c in scene.contacts if c.friction_law is not None]
+    if not frictions:
+        return Verdict(words="no contact has friction", matters=False)
+    slip = max(scene.elastic_slip(c) for c in frictions)
+    shortest = scene.program.shortest_way
+    turns = len({math.copysign(1.0, stroke.direction) for stroke in scene.program.cycle}) > 1
+    numbers = {"elastic slip at most over shortest stroke [-]": slip / shortest}
+    if not turns:
+        return Verdict(words="the sliding never turns round, so that all of the contact slides", matters=False)
+    matters = slip > shortest
+    words = f"the shortest stroke is {shortest:.3g} mm, and at most {slip:.2g} mm of it pass before the contact slides"
+    words += ": the scene tells the contact not to stick where it should" if matters else ""
+    return Verdict(words=words, matters=matters, numbers=numbers)
+
+
+def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
+    """By the flash temperature of each strip as Jaeger's moving band, all heat into the counter-surface.
+
+    The strips of one contact in one stroke are added up: a bound, as a strip warms its neighbours less than itself.
+    """
+    into = {"conductivity": assumed.counter_conductivity, "heat_capacity": assumed.counter_heat_capacity}
+    groups: dict[tuple[str, int], list[Strip]] = {}
+    for strip in strips:
+        groups.setdefault((strip.contact.name, id(strip.stroke)), []).append(strip)
+
+    def rise(group: list[Strip], speed: float) -> float:
+        mu = friction_range(scene, group[0].contact)[1]
+        return sum(heat.band_rise(mu * s.pressure * speed, s.width / 2, speed, **into) for s in group)
+
+    starts = min(onset(lambda v, g=group: rise(g, v), heat.LIMIT, low=1e-3, high=1e7) for group in groups.values())
+    numbers = {"speed from which the flash temperature exceeds 10 K [mm/s]": starts}
+    grounds = (
+        "each strip a band of uniform heat mu p v that moves over the counter-surface, which takes all of it (Jaeger; "
+        f"rubber conducts {assumed.counter_conductivity / assumed.rubber_conductivity:.3g} times less)"
+    )
+    moving = [group for group in groups.values() if group[0].stroke.speed is not None]
+    if not moving:
+        words = f"{UNSAID}; the flash temperature exceeds {heat.LIMIT:g} K from {starts:.3g} mm/s on: {grounds}"
+        return Verdict(words=words, matters=None, numbers=_finite(numbers))
+    hottest = max(moving, key=lambda group: rise(group, group[0].stroke.speed))
+    strip, speed = _main(hottest), hottest[0].stroke.speed
+    found, mu = rise(hottest, speed), friction_range(scene, strip.contact)[1]
+    power, unit = _power(scene, moving)
+    numbers |= {
+        "flash temperature [K]": found,
+        "Péclet number of the counter-surface [-]": heat.peclet(speed, strip.width / 2, assumed.counter_diffusivity),
+        f"frictional power [{unit}]": power,
+    }
+    matters: bool | None = found > heat.LIMIT
+    limit = f"above {heat.LIMIT:g} K rubber's stiffness, losses and friction shift, and this scene leaves it out"
+    if not matters:
+        limit = f"below the {heat.LIMIT:g} K that shift rubber's stiffness, losses and friction"
+    words = (
+        f"estimated +{found:.2g} K of flash temperature at most: {limit}. Hardest strip of {len(hottest)}: "
+        f"{_where(strip)}, mu p v = {mu:.3g} x {strip.pressure:.3g} MPa x {speed:.4g} mm/s, {strip.width:.3g} mm wide; "
+        f"{grounds}"
+    )
+    if all(stroke.speed is not None for stroke in scene.program.cycle):
+        names = {strip.contact.name for strip in strips}
+        warm = max(warming(scene, [s for s in strips if s.contact.name == name], assumed) for name in names)
+        numbers["warming of the counter-surface over the program if nothing cools it [K]"] = warm
+        words += f". Besides, {power:.2g} {unit} warm the counter-surface by {warm:.2g} K over the program, uncooled"
+        if not matters and found + warm > heat.LIMIT:
+            matters, words = None, f"{words}: what cools it decides, and no scene tells that"
+    return Verdict(words=words, matters=matters, numbers=_finite(numbers))
+
+
+def _power(scene: Scene, groups: list[list[Strip]]) -> tuple[float, str]:
+    """Highest frictional power of a contact in a stroke, and its unit."""
+    powers = []
+    for group in groups:
+        load = sum(s.load * (2 * math.pi * s.place[1] if scene.axisymmetric else 1.0) for s in group)
+        powers.append(1e-3 * friction_range(scene, group[0].contact)[1] * load * group[0].stroke.speed)
+    return max(powers), "W" if scene.axisymmetric else "W/mm"
+
+
+def _adhesion(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
+    """By pull-off force over load of the strip with the highest pressure, as a clean, dry, smooth line contact."""
+    strip, modulus, work = _main(strips), scene.material.plane_strain_modulus, assumed.work_of_adhesion
+    radius = adhesion.hertz_radius(strip.load, strip.width / 2, modulus)
+    pull = adhesion.line_pull_off(radius, modulus, work)
+    share = pull / strip.load
+    tabor = adhesion.tabor(radius, modulus, work, assumed.equilibrium_distance)
+    words = (
+        f"clean, dry and smooth with {1e3 * work:g} J/m² it would withstand a pull of {share:.2g} of its load "
+        f"({strip.load:.3g} N/mm, {_where(strip)}; Johnson, Kendall and Roberts, for lines Barquins; Tabor's number "
+        f"{tabor:.2g}); oil and roughness leave less"
+    )
+    much = share > SHARE
+    words += f". More than {SHARE:g}: it may matter if the contact is as clean as that" if much else ": negligible"
+    numbers = {"pull-off force over load [-]": share, "Tabor's number [-]": tabor}
+    return Verdict(words=words, matters=None if much else False, numbers=numbers)
+
+
+def _inertia(scene: Scene, assumed: Assumed) -> Verdict:
+    modulus, density = scene.material.shear_modulus, assumed.rubber_density
+    wave = inertia.wave_speed(modulus, density)
+    size = float((scene.contour.points.max(axis=0) - scene.contour.points.min(axis=0)).max())
+    starts = min(math.sqrt(inertia.LIMIT), inertia.SLOW * min(s.travel for s in scene.program.cycle) / size) * wave
+    numbers = {"speed of shear waves [m/s]": 1e-3 * wave, "speed from which inertia counts [mm/s]": starts}
+    speeds = [stroke.speed for stroke in scene.program.cycle if stroke.speed is not None]
+    if not speeds:
+        words = f"{UNSAID}; inertia counts from {1e-3 * starts:.3g} m/s on"
+        return Verdict(words=words, matters=None, numbers=numbers)
+    mach = inertia.mach_squared(max(speeds), modulus, density)
+    turning = inertia.reversal(size, modulus, density, min(stroke.duration for stroke in scene.program.cycle))
+    matters = mach > inertia.LIMIT or turning > inertia.SLOW
+    words = (
+        f"rho v²/G = {mach:.2g} (counts from {inertia.LIMIT:g} on), and a shear wave crosses the section in "
+        f"{turning:.2g} of the shortest stroke (counts from {inertia.SLOW:g} on): "
+        f"{'it matters' if matters else 'negligible'}. Vibrations that friction itself excites are another matter"
+    )
+    numbers |= {"rho v²/G [-]": mach, "time of a shear wave through the section over the shortest stroke [-]": turning}
+    return Verdict(words=words, matters=matters, numbers=numbers)
+
+
+def _film(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
+    """By the film of a flooded soft line contact over the roughness, at the strip with the highest pressure."""
+    strip, modulus, oil = _main(strips), scene.material.plane_strain_modulus, assumed.oil_viscosity
+    radius = adhesion.hertz_radius(strip.load, strip.width / 2, modulus)
+
+    def ratio(speed: float) -> float:
+        return film.line_film(oil, speed, strip.load, radius, modulus) / assumed.roughness
+
+    starts = onset(ratio, film.MIXED)
+    numbers = {"speed from which a film carries [mm/s]": starts}
+    grounds = (
+        f"flooded with oil of {1e6 * oil:g} Pa s (Herrebrugh, soft line contact; {1e3 * assumed.roughness:g} µm rough)"
+    )
+    if strip.stroke.speed is None:
+        words = f"{UNSAID}. {grounds[0].upper()}{grounds[1:]}, a film would carry from {starts:.3g} mm/s on"
+        return Verdict(words=words, matters=None, numbers=_finite(numbers))
+    found = ratio(strip.stroke.speed)
+    numbers |= {
+        "Hersey number eta v / load [-]": film.hersey(oil, strip.stroke.speed, strip.load),
+        "film over roughness [-]": found,
+    }
+    carries = found >= film.MIXED
+    law = strip.contact.friction_law
+    words = f"{_where(strip)}, {grounds}: film over roughness {found:.2g}, {film.regime(found)}"
+    if not carries:
+        return Verdict(words=words, matters=False, numbers=_finite(numbers))
+    if law is not None and (law.depends_on_speed or law.breaks):
+        words += ". The contact's friction law stands for it; its pressure and leakage are left out"
+        return Verdict(words=words, matters=False, numbers=_finite(numbers))
+    if scene.fluid is None:
+        words += ". Whether there is oil the scene does not tell; if so, friction and wear rate must stand for it"
+        return Verdict(words=words, matters=None, numbers=_finite(numbers))
+    words += ". Friction and wear rate must stand for it: they should depend on speed or lubrication"
+    return Verdict(words=words, matters=True, numbers=_finite(numbers))
+
+
+def _friction(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
+    strip = _main(strips)
+    number = strip.pressure / scene.material.shear_modulus
+    words = (
+        f"mean pressure over G is {number:.2g} at {_where(strip)}: shear stress over G is that times mu, which is 0.05 "
+        f"to 0.3 with oil and up to above 1 dry; above {SHARE:g} friction bends the contact out of shape"
+    )
+    return Verdict(words=words, matters=True if number > SHARE else None, numbers={"mean pressure / G [-]": number})
+
+
+def _wear(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
+    strip, way = _main(strips), scene.program.slid(scene.program.strokes)
+    if way == 0:
+        return Verdict(words="the program slides nowhere", matters=False)
+    rate = SHARE * strip.width / (strip.pressure * way)
+    words = (
+        f"over {way:.4g} mm a wear rate of {rate:.2g} mm²/N makes the strip at {_where(strip)} as deep as {SHARE:g} of "
+        "its width, and the pressure another one"
+    )
+    return Verdict(words=words, matters=None, numbers={"wear rate from which it counts [mm²/N]": rate})
+
+
+def _fluid(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
+    pressure = SHARE * _main(strips).peak
+    words = f"the scene seals nothing; a sealed pressure counts from {SHARE:g} of the highest contact pressure on"
+    return Verdict(words=words, matters=None, numbers={"sealed pressure from which it counts [MPa]": pressure})

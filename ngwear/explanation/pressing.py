@@ -1,0 +1,137 @@
+"""How hard a scene's surfaces press, at little cost: mounted once, and each stroke solved once on a coarse mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.stepping import StepOptions, advance
+from ngwear.errors import NgwearError
+from ngwear.geometry.body import Body
+from ngwear.loop.mounting import mount, unworn_body
+from ngwear.loop.refinement import wanted_size
+from ngwear.loop.stage import Stage
+from ngwear.loop.stepper import MAY_COME
+from ngwear.scene.program import Stroke
+from ngwear.scene.scene import ContactSpec, Scene
+
+Array = NDArray[np.float64]
+POINTS = 12  # of the background in each triangle
+COARSER = 4.0  # than the layers of a scene that deactivates elements, which are as fine everywhere
+
+
+@dataclass(frozen=True)
+class Strip:
+    """One connected piece of a contact in one stroke.
+
+    Attributes
+    ----------
+    contact : ContactSpec
+    stroke : Stroke
+    load : float
+        Normal force per length across the section [N/mm].
+    width : float
+        Deformed length along the outline [mm].
+    peak : float
+        Highest Cauchy pressure [MPa].
+    place : tuple of float
+        Its middle, deformed [mm].
+    """
+
+    contact: ContactSpec
+    stroke: Stroke
+    load: float
+    width: float
+    peak: float
+    place: tuple[float, float]
+
+    @property
+    def pressure(self) -> float:
+        """Mean pressure [MPa]."""
+        return self.load / self.width
+
+
+@dataclass(frozen=True)
+class Pressing:
+    """Strips of all contacts in all kinds of stroke of an unworn scene; ``missing`` says why there are none.
+
+    ``states`` are the equilibria, one for each kind of stroke, on the mesh of the stage that was given. That mesh is
+    the mounting one, not the run's: widths are off by up to one of its elements at each end, and peaks are too low.
+    """
+
+    strips: tuple[Strip, ...] = ()
+    missing: str = ""
+    states: tuple[Array, ...] = ()
+
+
+def press(scene: Scene, stage: Stage | None = None, *, on_mount: Callable[[float], None] | None = None) -> Pressing:
+    """Mount an unworn scene without memory on its mounting mesh and solve one stroke of each kind.
+
+    Parameters
+    ----------
+    scene : Scene
+    stage : Stage or None
+        The scene on its mounting mesh, if there is one already; its state is overwritten.
+    on_mount : callable or None
+        Called with the fraction that is done.
+    """
+    tell = on_mount or (lambda fraction: None)
+    try:
+        if scene.deactivation is not None:
+            scene, stage = _plain(scene), None
+        stage = stage or Stage(scene, unworn_body(scene))
+        mount(stage, tell)
+        vector = stage.problem.state.vec.FV().NumPy()
+        strips, states, kinds = [], [], _kinds(scene)
+        for i, stroke in enumerate(kinds):
+            stage.begin(vector)
+            for friction in stage.frictions.values():
+                friction.coefficient.set_state(0.0, stroke.speed)
+            advance(stage.problem, stage.stroke_loads(stroke), StepOptions(first=0.125))
+            states.append(vector.copy())
+            strips += [strip for spec in scene.contacts for strip in _strips(stage, spec, stroke)]
+            tell(0.7 + 0.3 * (i + 1) / len(kinds))
+    except NgwearError as error:
+        return Pressing(missing=str(error).partition("\n")[0])
+    return Pressing(tuple(strips), states=tuple(states))
+
+
+def _plain(scene: Scene) -> Scene:
+    """The scene without elements that may be lost, on a coarser mesh."""
+    accuracy = scene.accuracy
+    edge = COARSER * accuracy.patch
+    coarse = replace(accuracy, patch=edge, mounting=max(edge, accuracy.mounting), coarse=max(edge, accuracy.coarse))
+    return replace(scene, deactivation=None, accuracy=coarse)
+
+
+def _kinds(scene: Scene) -> list[Stroke]:
+    """Strokes of the cycle that differ in direction, pressure or speed."""
+    found: dict[tuple[float, float, float | None], Stroke] = {}
+    for stroke in scene.program.cycle:
+        found.setdefault((stroke.direction, stroke.pressure, stroke.speed), stroke)
+    return list(found.values())
+
+
+def _strips(stage: Stage, spec: ContactSpec, stroke: Stroke) -> list[Strip]:
+    profile = stage.contacts[spec.name].profile()
+    found = []
+    for zone in profile.zones():
+        load = float(profile.load[zone.nodes].sum())
+        middle = 0.5 * (zone.start + zone.end)
+        if load > 0 and zone.width > 0:
+            found.append(Strip(spec, stroke, load, zone.width, zone.peak, (float(middle[0]), float(middle[1]))))
+    return found
+
+
+def history_points(stage: Stage, states: Sequence[Array]) -> int:
+    """Points that the memory of a scene will have, by the mesh that the run makes for the contacts seen here.
+
+    The run refines once more, where stresses on the fine mesh ask for it.
+    """
+    body = stage.body
+    if states:
+        body = Body(body.contour, wanted_size(stage, list(states), reach=MAY_COME))
+    return POINTS * body.mesh.ne

@@ -1,0 +1,65 @@
+"""How warm a scene's counter-surfaces get as a whole if nothing cools them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ngwear.explanation import heat
+from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.pressing import Strip
+from ngwear.scene.scene import Scene
+from ngwear.surfaces import Cylinder, Plane
+
+
+def warming(scene: Scene, strips: list[Strip], assumed: Assumed) -> float:
+    """Rise of a contact's counter-surface over the program if nothing cools it [K], all frictional heat into it.
+
+    The heat is spread over what it reaches in that time: a shaft's or rod's section as far as its middle, a plane to
+    the same depth, along what the strokes rub and as far beyond. It is 0 for a plane that never turns round, which
+    comes in cold. Cooling by air, oil and housing is neglected: a bound.
+
+    Parameters
+    ----------
+    scene : Scene
+        With a speed in every stroke.
+    strips : list of Strip
+        Of one contact, in all kinds of stroke.
+    assumed : Assumed
+    """
+    spec, program = strips[0].contact, scene.program
+    depth = heat.reach(program.duration, assumed.counter_diffusivity)
+    places = np.cumsum([0.0, *(s.direction * s.travel for s in program.cycle)])
+    turns = len({math.copysign(1.0, s.direction) for s in program.cycle}) > 1
+    if isinstance(spec.surface, Cylinder):
+        volume = _ring(spec.surface.radius, depth)
+    elif not isinstance(spec.surface, Plane) or not turns or program.strokes == 0:
+        return 0.0
+    else:
+        along = [strip.place[0] for strip in strips]
+        length = float(np.ptp(places)) + max(along) - min(along) + 2 * depth
+        rod = scene.axisymmetric and spec.surface.normal_vector[1] > 0
+        section = _ring(spec.surface.point[1], depth) if rod else depth
+        if scene.axisymmetric and not rod:
+            section = math.pi * ((spec.surface.point[1] + depth) ** 2 - spec.surface.point[1] ** 2)
+        volume = length * section
+    return heat.uncooled_rise(rubbed(scene, strips), volume, assumed.counter_heat_capacity) if volume > 0 else 0.0
+
+
+def rubbed(scene: Scene, strips: list[Strip]) -> float:
+    """Frictional heat of one contact over the program [mJ, or mJ/mm], its pressure as it is when new."""
+    program, total = scene.program, 0.0
+    end = program.slid(program.strokes)
+    for stroke in program.cycle:
+        same = (stroke.direction, stroke.pressure, stroke.speed)
+        alike = [s for s in strips if (s.stroke.direction, s.stroke.pressure, s.stroke.speed) == same]
+        load = sum(s.load * (2 * math.pi * s.place[1] if scene.axisymmetric else 1.0) for s in alike)
+        mu = strips[0].contact.friction_law.curve(stroke.speed).mean(0.0, end) if end > 0 else 0.0
+        total += mu * load * stroke.travel * program.strokes / len(program.cycle)
+    return total
+
+
+def _ring(radius: float, depth: float) -> float:
+    """Area of a disc's rim of a depth [mm²]."""
+    return math.pi * (radius**2 - max(radius - depth, 0.0) ** 2)

@@ -1,1 +1,0 @@
-"""From the tables of a scene file to what they describe."""

@@ -1,0 +1,48 @@
+"""Lengths for elements from the section's size and the contacts' widths, where the scene gives elements across."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.loop.stage import Stage
+from ngwear.scene.scene import Scene
+
+Array = NDArray[np.float64]
+
+COARSE = 0.3  # of the section's smaller extent: where neither contact nor stress asks for less
+MOUNTING = 0.04  # of that extent
+
+
+def laid_out(scene: Scene) -> Scene:
+    """The scene with lengths to mount it by, if it gives none; that of the patch is only the mounting's yet."""
+    accuracy = scene.accuracy
+    if accuracy.patch is not None:
+        return scene
+    size = float(np.ptp(scene.contour.points, axis=0).min())
+    lengths = {"patch": MOUNTING * size, "mounting": MOUNTING * size, "coarse": COARSE * size}
+    return replace(scene, accuracy=replace(accuracy, across=None, error=None, **lengths))
+
+
+def chosen(stage: Stage, phases: list[Array], across: float) -> Scene:
+    """The stage's scene with a patch of so many elements across its contacts; as it is if none bears anything.
+
+    Their width is the mean of all zones by the load that they bear, of followed contacts in all strokes of the cycle.
+    """
+    accuracy, vector = stage.scene.accuracy, stage.problem.state.vec.FV().NumPy()
+    keep, moment, load = vector.copy(), 0.0, 0.0
+    for phase in phases:
+        vector[:] = phase
+        for spec in stage.scene.followed:
+            profile = stage.contacts[spec.name].profile()
+            for zone in profile.zones():
+                borne = float(profile.load[zone.nodes].sum())
+                moment, load = moment + borne * zone.width, load + borne
+    vector[:] = keep
+    if load == 0.0:
+        return stage.scene
+    patch = moment / load / across
+    lengths = {"patch": patch, "mounting": max(accuracy.mounting, patch), "coarse": max(accuracy.coarse, patch)}
+    return replace(stage.scene, accuracy=replace(accuracy, **lengths))

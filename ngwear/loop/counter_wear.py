@@ -1,0 +1,57 @@
+"""Counter-surfaces that wear in a scene: where each stands in a stroke, and what the stroke takes off it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.loop.stage import Stage
+from ngwear.scene.program import Program
+from ngwear.surfaces import WornProfile
+from ngwear.wear.strokes import Strokes
+
+Array = NDArray[np.float64]
+
+Counters = dict[str, WornProfile]
+
+
+def ways(program: Program, index: int, sliding: Strokes) -> Array:
+    """How far surfaces have moved along themselves at the start and the end of each stroke of a kind [mm].
+
+    Shape (n, 2); strokes that begin and end at the same places every time stand in one row.
+    """
+    moves = [math.copysign(stroke.travel, stroke.direction) for stroke in program.cycle]
+    start, net = sum(moves[:index]), sum(moves)
+    if net == 0:
+        return np.array([[start, start + moves[index]]])
+    cycles = np.floor(sliding.start / sliding.cycle + 1e-9) + np.arange(max(1, sliding.repeats))
+    return start + net * cycles[:, None] + np.array([[0.0, moves[index]]])
+
+
+def place(stage: Stage, counters: Counters, index: int, sliding: Strokes) -> None:
+    """Let the surfaces stand as halfway through the first of the strokes, as worn as they are."""
+    for name, counter in counters.items():
+        contact = stage.contacts[name]
+        contact.counter = counter
+        contact.turned = float(ways(stage.scene.program, index, sliding)[0].mean())
+
+
+def worn(stage: Stage, counters: Counters, index: int, sliding: Strokes, shares: dict[str, Array]) -> Counters:
+    """The surfaces after the strokes: each of their points loses ``k2 int p dx`` over the places that it passes.
+
+    Where a contact's nodes slip only a share of the way, the loss is that share of it.
+    """
+    passes = ways(stage.scene.program, index, sliding)
+    after = {}
+    for spec in stage.scene.contacts:
+        if spec.name in counters:
+            contact = stage.contacts[spec.name]
+            ends, pressure = contact.imprint()
+            pressure = pressure * contact.wear_factor(pressure)
+            wear = spec.counter_wear_rate * pressure * (sliding.repeats / len(passes))
+            if spec.name in shares:
+                wear = wear * shares[spec.name][contact.profile().edges]
+            after[spec.name] = counters[spec.name].swept(ends - contact.turned, wear, passes)
+    return after

@@ -1,0 +1,231 @@
+"""The loop's part in deactivating elements: tear what bears too much, move the surface, filter what is distorted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.equilibrium.keep import keep
+from ngwear.errors import GeometryError, MeshError, SceneError, require
+from ngwear.geometry.cells import Cells, Fate
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.element_body import ElementBody
+from ngwear.geometry.layers import layered
+from ngwear.geometry.recession import STEEPEST
+from ngwear.laws.damage import Stresses
+from ngwear.loop.remesh import adopt
+from ngwear.loop.stage import Stage
+from ngwear.loop.state import State
+from ngwear.scene.scene import Scene
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+THINNEST = 0.2  # of an element's side: how near a surface node comes to the one beneath before both become one
+
+
+def element_body(scene: Scene) -> ElementBody:
+    """The section of a scene that deactivates elements, meshed in layers below the edges that wear.
+
+    Raises
+    ------
+    SceneError
+        If the layers do not fit the section.
+    """
+    accuracy, depth = scene.accuracy, scene.deactivation.depth
+    sizes = {"edge": accuracy.patch, "coarse": accuracy.coarse, "grading": accuracy.grading}
+    try:
+        return ElementBody(layered(scene.contour, scene.worn_edges, depth=depth, **sizes))
+    except GeometryError as error:
+        raise SceneError("deactivation.depth", depth, f"no such layers fit the section: {error}") from None
+
+
+def stresses(stage: Stage) -> Stresses:
+    """Mean stresses of the living elements in the present state, in the mesh's order.
+
+    The highest ones grow without bound where an element beside has been lost: one loss would go through the section.
+    """
+    problem = stage.problem
+    points = problem.points
+    points.follow()
+    strain = points.strain(problem.state.vec.FV().NumPy())
+    piola, _ = stage.elasticity.response(strain, tangent=False)
+    p, f = (a[..., :4].reshape(*a.shape[:-1], 2, 2) for a in (piola, strain + IDENTITY))
+    volume = (points.volumes * np.linalg.det(f) * (1.0 + strain[..., 4])).sum(axis=1)  # deformed
+    # sigma = P F^T / J, so that its integral over the deformed volume is that of P F^T over the reference one.
+    mean = ((p @ np.swapaxes(f, -1, -2)) * points.volumes[..., None, None]).sum(axis=1) / volume[:, None, None]
+    energy = (stage.elasticity.energy(strain) * points.volumes).sum(axis=1) / points.volumes.sum(axis=1)
+    return Stresses(np.stack([mean[:, 0, 0], mean[:, 1, 1], 0.5 * (mean[:, 0, 1] + mean[:, 1, 0])], axis=1), energy)
+
+
+def loaded(stage: Stage) -> dict[str, Array]:
+    """Displacement of the points and mean stresses of the elements in the present state; nan where they are lost."""
+    body, cells = stage.body, stage.body.cells
+    displacement, stress = np.full((len(cells.points), 2), np.nan), np.full((len(cells.fate), 3), np.nan)
+    moved = stage.problem.state.vec.FV().NumPy()[stage.problem.part(DISPLACEMENT)].reshape(2, -1)
+    displacement[body.vertices] = moved[:, : len(body.vertices)].T
+    stress[body.numbers] = stresses(stage).cauchy
+    return {"displacement [mm]": displacement, "stress xx, yy, xy [MPa]": stress}
+
+
+def exhaustion(state: State, repeats: int) -> Array:
+    """How much of what it bears each element of the layers is under after so many such cycles; 0 where it is lost."""
+    stage, cells = state.stage, state.stage.body.cells
+    criterion = stage.scene.deactivation.damage
+    out = np.zeros(len(cells.fate))
+    out[stage.body.numbers] = _usage(stage)
+    if criterion.accumulates:
+        out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
+    return np.where(cells.living & cells.layers & _near_contact(stage), out, 0.0)
+
+
+def _usage(stage: Stage) -> Array:
+    """How much of what it bears each living element is under, in the mesh's order; of fatigue, what a cycle uses up."""
+    criterion, found = stage.scene.deactivation.damage, stresses(stage)
+    if criterion.length is not None:
+        cells, mine = stage.body.now, stage.body.numbers
+        found = found.averaged(cells.centres()[mine], cells.areas()[mine], criterion.length)
+    return criterion.exhaustion(found)
+
+
+def _near_contact(stage: Stage) -> Mask:
+    """Which elements lie within reach of a contact that wears and carries load."""
+    cells, reach = stage.body.now, stage.scene.deactivation.reach
+    if reach is None:
+        return np.ones(len(cells.fate), dtype=bool)
+    profiles = [stage.contacts[c.name].profile() for c in stage.scene.contacts if c.wears]
+    loaded_places = np.vstack([p.reference[p.nominal_pressure > 0] for p in profiles])
+    if len(loaded_places) == 0:
+        return np.zeros(len(cells.fate), dtype=bool)
+    distance, _ = cKDTree(loaded_places).query(cells.centres())
+    return distance <= reach
+
+
+def begin(state: State) -> None:
+    """Refuse rubber that tears while it is mounted; no element has used up anything of its life yet.
+
+    Raises
+    ------
+    SceneError
+        With the place where the mounted part bears most.
+    """
+    cells, damage = state.stage.body.cells, state.stage.scene.deactivation.damage
+    if damage is None:
+        return
+    state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
+    used = exhaustion(state, 1)
+    worst = int(used.argmax())
+    x, y = cells.centres()[worst]
+    require(
+        used[worst] < 1.0,
+        "deactivation.damage.critical",
+        damage.critical,
+        f"the part would tear while it is fitted, at ({x:.3f}, {y:.3f}) mm: there the {damage.name} reaches "
+        f"{used[worst]:.3g} of what it bears; mount it with less force or interference, or take a stronger rubber",
+    )
+
+
+def tear(state: State, outline: Contour, repeats: int) -> bool:
+    """Deactivate what the present state tears, from the outline as it was before the solve; return whether any.
+
+    Raises
+    ------
+    GeometryError
+        If nothing is left, or the section is cut in two.
+    """
+    damage = state.stage.scene.deactivation.damage
+    if damage is None:
+        return False
+    torn = exhaustion(state, repeats) >= 1.0
+    if not torn.any():
+        return False
+    state.stage.body.move_to(outline)
+    lose(state, state.stage.body.now, torn, Fate.TORN)
+    return True
+
+
+def tire(state: State, repeats: int, *, last: bool) -> None:
+    """Note how the accepted stroke has strained the elements, of a criterion that adds up over cycles."""
+    deactivation = state.stage.scene.deactivation
+    if deactivation is None or deactivation.damage is None or not deactivation.damage.accumulates:
+        return
+    mine = state.stage.body.numbers
+    state.strained[mine] = np.maximum(state.strained[mine], _usage(state.stage))
+    if last:
+        state.fatigue = state.fatigue + repeats * state.strained
+        state.strained = np.zeros_like(state.strained)
+
+
+def lose(state: State, cells: Cells, dead: Mask, fate: Fate) -> None:
+    """Take elements out of the section, book their areas by cause, and go on with what is left."""
+    left = booked(state, cells, dead, fate)
+    go_on(state, left)
+
+
+def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
+    """The section without some elements, their areas in the book of the state."""
+    scene = state.stage.scene
+    touching = {edge for contact in scene.contacts for edge in contact.edges}
+    bonded = tuple(edge for support in scene.supports for edge in support.edges if edge not in touching)
+    left = cells.without(dead, fate, bonded)
+    areas = cells.areas()
+    newly = cells.living & ~left.living
+    for cause in (Fate.TORN, Fate.DISTORTED, Fate.LOOSE):
+        state.ledger.lost[cause] += float(areas[newly & (left.fate == cause)].sum())
+    return left
+
+
+def go_on(state: State, cells: Cells) -> None:
+    """Set the scene up on the elements that are left; states are kept, as first guesses."""
+    old = state.stage
+    try:
+        stage = Stage(old.scene, ElementBody(cells))
+    except MeshError as error:
+        raise GeometryError(f"what is left of the section is held or loaded by nothing: {error}") from None
+    adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
+
+
+def follow(state: State, outline: Contour, points: Array) -> None:
+    """Let the surface nodes go from the outline to worn places, shape (n, 2), and filter what is then too distorted.
+
+    Raises
+    ------
+    MeshError
+        If an element would turn inside out and the scene has no filter.
+    GeometryError
+        If nothing is left, or the section is cut in two.
+    """
+    body, sieve = state.stage.body, state.stage.scene.deactivation.distortion
+    cells = moved = body.cells.moved(points)
+    worn = moved.area
+    went = dict(zip(cells.rim.tolist(), np.linalg.norm(points - outline.points, axis=1), strict=True))
+    while len(reached := _reached(cells, went)):
+        cells = cells.merged(reached)
+    if cells is not moved:
+        state.ledger.lost[Fate.WORN] += worn - cells.area  # by walls, of pits or holes, whose ends were merged
+    distorted = np.zeros(len(cells.fate), dtype=bool) if sieve is None else sieve.finds(cells)
+    if distorted.any() or cells is not moved:  # merged points may lie at a hole: what is left there hangs on one point
+        cells = booked(state, cells, distorted, Fate.DISTORTED)
+    if np.array_equal(cells.corners, body.cells.corners) and np.array_equal(cells.fate, body.cells.fate):
+        body.move_to(replace(outline, points=points))
+    else:
+        go_on(state, cells)
+
+
+def _reached(cells: Cells, went: dict[int, float]) -> NDArray[np.intp]:
+    """Points of the outline that have come near the next ones on their columns, or passed them on the way they went."""
+    rim = cells.rim
+    place, beneath = cells.points[rim], cells.below[rim]
+    chord = np.roll(place, -1, axis=0) - np.roll(place, 1, axis=0)
+    normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
+    left = ((cells.points[beneath] - place) * normal).sum(axis=1)
+    near = THINNEST * np.sqrt(np.median(cells.made[cells.layers]))
+    # A column along the outline, in a wall, is not worn; one that points outwards has been passed, or hangs over.
+    across = np.abs((cells.inward() * normal).sum(axis=1)) > STEEPEST
+    passed = left >= -np.array([went[point] for point in rim.tolist()])
+    return rim[(beneath >= 0) & across & passed & (left < near)]

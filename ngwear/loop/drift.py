@@ -1,0 +1,59 @@
+"""How the laws of friction and wear drift as a scene slides on, and how far a jump may go meanwhile."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from ngwear.laws import Curve
+from ngwear.scene.scene import ContactSpec, Scene
+
+CHANGE, MOST_CHANGE = 5.0, 0.5  # times the wear error: of a law in a jump, over its highest value in the scene
+LAG = 0.5  # times the wear error: of the friction that a jump uses behind its mean over the jump
+
+
+def steady_cycles(scene: Scene, done: int, most: int) -> int:
+    """Cycles, from one to ``most``, that a step after ``done`` strokes may take.
+
+    In a step of several cycles no law may change by more than five times ``Accuracy.wear_error`` of its highest value
+    in the scene, nor by more than half of that; and friction, which is taken from the middle of the step, may miss its
+    mean by no more than half the wear error. So a jump passes over no phase of a law unseen, and hardly over a bend,
+    whatever the error of the worn area allows; and a run with longer jumps shows what that errs by.
+    """
+    start, kinds = scene.program.slid(done), len(scene.program.cycle)
+    allowed, refused = 1, most + 1
+    while refused - allowed > 1:
+        tried = (allowed + refused) // 2
+        if _is_steady(scene, start, scene.program.slid(done + tried * kinds)):
+            allowed = tried
+        else:
+            refused = tried
+    return allowed
+
+
+def friction_range(scene: Scene, contact: ContactSpec) -> tuple[float, float]:
+    """Lowest and highest friction coefficient that the scene meets [-], under the lightest pressure."""
+    last = scene.program.slid(scene.program.strokes)
+    found = [curve.extremes(0.0, last) for curve in _friction(scene, contact)]
+    return min(low for low, _ in found), max(high for _, high in found)
+
+
+def _is_steady(scene: Scene, start: float, end: float) -> bool:
+    last, error = scene.program.slid(scene.program.strokes), scene.accuracy.wear_error
+    for contact in scene.contacts:
+        friction = list(_friction(scene, contact))
+        for curve in (*friction, contact.wear_rate.curve):
+            low, high = curve.extremes(start, end)
+            if high - low > min(CHANGE * error, MOST_CHANGE) * curve.extremes(0.0, last)[1]:
+                return False
+        for curve in friction:
+            mean = curve.mean(start, end)
+            if abs(curve.value(0.5 * (start + end)) - mean) > LAG * error * mean:
+                return False
+    return True
+
+
+def _friction(scene: Scene, contact: ContactSpec) -> Iterator[Curve]:
+    """The contact's friction over distance, at the speed of each kind of stroke."""
+    law = contact.friction_law
+    for speed in {stroke.speed for stroke in scene.program.cycle} if law is not None else ():
+        yield law.curve(speed)

@@ -1,0 +1,90 @@
+"""Before the first stroke: the unworn section meshed, and mounted."""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
+from ngwear.errors import ConvergenceError, SceneError
+from ngwear.geometry.body import Body
+from ngwear.loop.refinement import mounting_field, unworn_outline
+from ngwear.loop.stage import Stage
+from ngwear.loop.state import State
+from ngwear.scene.scene import Scene
+from ngwear.wear.archard import critical_distance
+
+if TYPE_CHECKING:
+    from ngwear.geometry.element_body import ElementBody
+
+log = logging.getLogger(__name__)
+
+
+def warn_if_unstable(scene: Scene) -> None:
+    """Warn, where the caller was called, of explicit steps that grow ripples of the pressure."""
+    wear, cycle = scene.wear, scene.program.cycle
+    rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
+    critical = critical_distance(scene.accuracy.patch, rate, scene.material.plane_strain_modulus)
+    longest = max(s.travel for s in cycle)
+    if wear.scheme == "explicit" and longest > critical:
+        warnings.warn(
+            f"explicit wear over {longest:.4g} mm a step is unstable: the pressure will show the mesh beyond "
+            f"{critical:.4g} mm; use scheme = 'implicit', or shorter strokes",
+            RuntimeWarning,
+            stacklevel=3,
+        )
+
+
+def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody:
+    """The unworn section, meshed for mounting; ``across`` as of ``mounting_field``."""
+    if scene.deactivation is not None:
+        from ngwear.loop import deactivation
+
+        return deactivation.element_body(scene)
+    return Body(unworn_outline(scene), mounting_field(scene, across))
+
+
+def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
+    """Bring the surfaces to their places, without fluid pressure; ``on_mount`` is called with the fraction done.
+
+    Raises
+    ------
+    ConvergenceError
+        If no equilibrium carries the load.
+    """
+    problem = stage.problem
+    loads = stage.mounted_loads()
+
+    def report(fraction: float, _: Any) -> None:
+        on_mount(0.7 * fraction)
+
+    if stage.stretched_guess():
+        problem.set_loads(loads)
+        try:
+            return relax(problem, StepOptions(first=1 / 64), on_step=report)
+        except ConvergenceError as error:
+            log.info("%s: mounting by interference instead", error)
+            problem.state.vec[:] = 0.0
+    problem.set_loads(stage.first_touch())
+    try:
+        return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)
+    except ConvergenceError as error:
+        found = str(error).removesuffix(f"\n{error.report}")
+        advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds
+        raise ConvergenceError(f"no equilibrium found that carries the load{advice}: {found}", error.report) from None
+
+
+def refuse_idle_contacts(state: State) -> None:
+    """SceneError for a surface that never touches the part: it would wear nothing, without a word."""
+    problem = state.stage.problem
+    for spec in state.stage.scene.contacts:
+        contact = state.stage.contacts[spec.name]
+        pressed = any(p.vector[problem.part(contact.pressure_name)].max() > 0 for p in state.phases)
+        if spec.wears and not pressed:
+            raise SceneError(
+                f"contact '{spec.name}'.surface",
+                spec.surface,
+                "lifts off: it touches its edges in no stroke and wears nothing; move it closer or give a force",
+            )

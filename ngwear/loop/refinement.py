@@ -1,0 +1,207 @@
+"""Where the mesh shall be fine: in the followed contacts, and where the stresses say that it is too coarse."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.sizing import SizeField, smoothed
+from ngwear.loop.stage import Stage
+from ngwear.scene.scene import ContactSpec, Scene
+
+Array = NDArray[np.float64]
+
+FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
+NARROWEST = 0.5  # of the patch: elements of the narrowest zones
+NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
+LEAST = 0.5  # of these: also where wear has not so much left to close
+TURN, WIDEST_TURN = 0.5, 0.7  # rad, of the outline between nodes off the contacts; with few elements across
+FEW = 4.0  # elements across; with two more all follow the outline as closely as they ever do
+CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
+
+
+def wanted_size(
+    stage: Stage,
+    phases: list[Array],
+    *,
+    across: float | None = None,
+    reach: float = NEAR,
+    sliding: float = 0.0,
+    left: float = math.inf,
+) -> SizeField:
+    """Element sizes for the present states, one for each stroke of the cycle.
+
+    In the contacts those of ``contact_sizes``; elsewhere what brings the indicator of an element to its share of
+    ``Accuracy.stress_error``.
+    """
+    contacts = contact_sizes(stage, phases, across=across, reach=reach, sliding=sliding, left=left)
+    places, sizes = _stress_sizes(stage, phases)
+    heard = sizes < FINER * contacts(places)
+    return replace(
+        contacts,
+        seeds=np.vstack([contacts.seeds, places[heard]]),
+        sizes=np.concatenate([contacts.sizes, sizes[heard]]),
+    )
+
+
+def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0, left: float = math.inf) -> bool:
+    """Whether a followed contact, or a stress, has reached elements that are much too coarse for it.
+
+    Gaps count up to half as wide as those that ``contact_sizes`` makes a mesh for, so that no mesh is outgrown as soon
+    as it is made.
+    """
+    wanted, body = wanted_size(stage, phases, reach=NEARER, sliding=sliding, left=left), stage.body
+    slack = np.where(wanted.sizes > stage.scene.accuracy.patch, STRESS_SLACK, CONTACT_SLACK)
+    return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
+
+
+def contact_sizes(
+    stage: Stage,
+    phases: list[Array],
+    *,
+    across: float | None = None,
+    reach: float = NEAR,
+    sliding: float = 0.0,
+    left: float = math.inf,
+) -> SizeField:
+    """Element sizes for the contacts alone.
+
+    The patch's where a followed contact carries load, its gap is below ``reach`` patches, or wear over a distance of
+    ``sliding`` [mm] may close it. Fewer patches, down to half, where all the distance that is ``left`` [mm] wears no
+    ``NEAR`` patches. With ``across``, zones that are narrower than others have smaller ones, so many across each, down
+    to ``NARROWEST`` of the scene's, which is that of the mean zone.
+
+    A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate, and
+    what is worn brings the surfaces nearer by no more.
+
+    Where the leak pressure is asked for, also the patch's where the fluid meets a contact, followed or not.
+    """
+    accuracy, contour = stage.scene.accuracy, stage.body.contour
+    size, fronts = np.full(len(contour), np.inf), [np.empty((0, 2))]
+    leaks = stage.fluid is not None and stage.scene.fluid.leak_pressure
+    vector = stage.problem.state.vec.FV().NumPy()
+    keep = vector.copy()
+    for phase in phases:
+        vector[:] = phase
+        for spec in stage.scene.followed:
+            contact = stage.contacts[spec.name]
+            profile = contact.profile()
+            pressure = profile.nominal_pressure
+            wearing = pressure * contact.wear_factor(profile.pressure)
+            rate = spec.wear_rate.highest * wearing.max(initial=0.0)
+            deepest = rate * left if rate > 0 else 0.0
+            soon = reach * min(accuracy.patch, max(LEAST * accuracy.patch, deepest / NEAR)) + rate * sliding
+            patch = element_edges(profile, accuracy.patch, across)
+            near = (pressure > 0) | (profile.gap < soon)
+            ask = _spanned(contour, profile, near)
+            size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
+        if leaks:
+            fronts.append(_beside(contour, stage.fluid.fronts(), accuracy.patch))
+    vector[:] = keep
+    ask, fronts = size < np.inf, np.vstack(fronts)
+    seeds, sizes = np.vstack([contour.points[ask], fronts]), np.append(size[ask], np.full(len(fronts), accuracy.patch))
+    turn = TURN if across is None else min(TURN * max(1.0, FEW / across), WIDEST_TURN)
+    lengths = (accuracy.coarse, accuracy.grading)
+    return SizeField(seeds, sizes, *lengths, elsewhere=turn, per_radius=_per_radius(across))
+
+
+def _per_radius(across: float | None) -> float:
+    """Element edges over the outline's radius of curvature, at least: fewer with few elements across.
+
+    Two, Netgen's own bound, give the shipped rod seal, on 2.5 across, a fourth more elements where nothing touches.
+    """
+    return 2.0 if across is None else float(np.clip(across / 2 - 1.0, 1.0, 2.0))
+
+
+def _beside(contour: Contour, t: Array, apart: float) -> Array:
+    """Places of the outline at parameters t, and so far to either side [mm], shape (3 len(t), 2)."""
+    points = np.arange(len(contour) + 1)
+    ways = np.concatenate([[0.0], np.cumsum(contour.lengths)])
+    there = np.interp(t, points, ways)[:, None] + apart * np.array([-1, 0, 1])
+    return contour.at(np.interp(there.ravel() % ways[-1], ways, points))
+
+
+def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:
+    """Element edge for each node of a contact by its zone, or the nearest one, shape (k,)."""
+    zones = profile.zones() if across is not None else []
+    if not zones:
+        return np.full(len(profile.t), patch)
+    nodes = np.concatenate([np.arange(zone.nodes.start, zone.nodes.stop) for zone in zones])
+    edges = np.concatenate([np.full(zone.nodes.stop - zone.nodes.start, zone.width / across) for zone in zones])
+    nearest = np.abs(profile.t[:, None] - profile.t[nodes]).argmin(axis=1)
+    return np.clip(edges[nearest], NARROWEST * patch, patch)
+
+
+def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
+    """Centres of the elements, shape (m, 2), and the element edge that their stress error asks for, shape (m,).
+
+    The stress is compared with its continuous recovery at the nodes (Zienkiewicz & Zhu, Int. J. Numer. Methods Eng.
+    24 (1987) 337): eta^2 = int |P - P*|^2 / 2G dV. With N elements of equal error each may have
+    eta = stress_error sqrt(energy / N); the error falls with the element edge to the power of the displacement's order.
+    Order 1 is taken for 2 in this, and arrives in several meshes: where few elements are refined, N stays and theirs
+    falls with the square (the shipped shaft then has 7,000 elements; by the first power it had 8,800). A tolerance of 1
+    asks for nothing.
+    """
+    if stage.scene.accuracy.stress_error == 1:
+        return np.empty((0, 2)), np.empty(0)
+    points, elasticity = stage.problem.points, stage.elasticity
+    points.follow()
+    edge, power = np.full(len(points.volumes), np.inf), 1 / max(elasticity.order, 2)
+    for phase in phases:
+        strain = points.strain(phase)
+        stress, _ = elasticity.response(strain, tangent=False)
+        off = stress[..., :5] - points.recovered(stress[..., :5])
+        error = np.sqrt((points.volumes * (off**2).sum(axis=-1)).sum(axis=1) / (2 * elasticity.material.shear_modulus))
+        energy = (points.volumes * elasticity.energy(strain)).sum()
+        share = stage.scene.accuracy.stress_error * np.sqrt(energy / len(edge))
+        edge = np.minimum(edge, points.edges * (share / np.maximum(error, 1e-12 * share)) ** power)
+    return points.centres, np.maximum(edge, stage.scene.accuracy.patch)
+
+
+def _spanned(contour: Contour, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Contour points at marked nodes, and between them where a mesh edge joins two."""
+    n = len(contour)
+    ask = np.zeros(n, dtype=bool)
+    ask[np.rint(profile.t[near]).astype(int) % n] = True
+    for i, j in profile.edges[near[profile.edges].all(axis=1)]:
+        a, b = profile.t[i], profile.t[j]
+        b = b if b > a else b + n
+        ask[np.arange(np.floor(a), np.ceil(b) + 1).astype(int) % n] = True
+    return ask
+
+
+def unworn_outline(scene: Scene) -> Contour:
+    """The scene's outline with points as near to each other as elements of its patch ask for."""
+    return smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch)
+
+
+def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
+    """Element sizes while the part is mounted: the followed edges fine enough for their shape.
+
+    ``across`` is that of a scene whose lengths come from it.
+    """
+    accuracy, contour = scene.accuracy, scene.contour
+    curved = np.abs(contour.turning) > 1e-3
+    mine = np.zeros(len(contour), dtype=bool)
+    for spec in scene.followed:
+        on = contour.on(spec.edges)
+        mine |= on | np.roll(on, 1)
+    seeds = contour.points[mine & curved & ~contour.corners]
+    for spec in scene.followed:
+        if len(seeds) == 0 or spec.force is not None:
+            seeds = np.vstack([seeds, _nearest_place(scene, spec)])
+    sizes, grading = np.full(len(seeds), accuracy.mounting), max(accuracy.grading, 0.3)
+    return SizeField(seeds, sizes, accuracy.coarse, grading, turn=0.5, per_radius=_per_radius(across))
+
+
+def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:
+    """Where the surface comes nearest to its edges, shape (1, 2)."""
+    contour = scene.contour
+    t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])
+    places = contour.at(t)
+    return places[[int(np.argmin(spec.surface.gap(*places.T)))]]

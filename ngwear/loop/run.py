@@ -1,0 +1,248 @@
+"""One verb: run a scene to its end, with files, pictures, progress and resumption."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Protocol
+
+from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
+from ngwear.files.files import COMPLETED, GAVE_UP
+from ngwear.loop.state import State
+from ngwear.loop.stepper import Stepper
+from ngwear.results.result_file import Snapshot
+from ngwear.results.results import Folder, Recorder
+from ngwear.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Result:
+    """How a run ended, and what it found.
+
+    Attributes
+    ----------
+    status : str
+        ``"completed"`` or ``"gave up"``.
+    message : str
+        Why it stopped.
+    summary : dict
+        As in ``summary.json``.
+    recorder : Recorder
+        Rows (as in ``series.csv``) and snapshots.
+    state : State or None
+        The last accepted state; None if the part could not be mounted.
+    error : Exception or None
+        What made it give up.
+    """
+
+    status: str
+    message: str
+    summary: dict[str, Any]
+    recorder: Recorder
+    state: State | None
+    error: Exception | None = None
+
+
+class Drawing(Protocol):
+    """What draws the figures of a run."""
+
+    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
+        """Draw the mesh, or have it drawn meanwhile."""
+
+    def rest(self, folder: Path) -> None:
+        """Draw all that is not there; it is when this returns."""
+
+
+class DrawnHere:
+    """What draws the figures of a run in this process."""
+
+    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
+        """Draw the mesh."""
+        from ngwear.plots.wear import plot_mesh
+
+        plot_mesh(folder, scene, first)
+
+    def rest(self, folder: Path, share: tuple[int, int] = (0, 1)) -> None:
+        """Draw all that is not there, or this process's share of it (``ngwear.plots.wear.plot``)."""
+        from ngwear.plots.wear import plot
+
+        plot(folder, again=False, share=share)
+
+
+def run(
+    scene: Scene,
+    *,
+    out: Path | str | None = None,
+    resume: bool = False,
+    progress: bool = False,
+    throw: bool = True,
+    figures: bool = True,
+    on_step: Callable[[State], None] | None = None,
+    errors: Callable[[Recorder, dict[str, Any]], None] | None = None,
+    draw: Drawing | None = None,
+) -> Result:
+    """Run a scene to its end.
+
+    Parameters
+    ----------
+    scene : Scene
+    out : path or None
+        Folder for ``series.csv``, ``result.h5``, ``summary.json``, the checkpoint and the figures.
+    resume : bool
+        Go on from the folder's checkpoint.
+    progress : bool
+        Show a progress bar with depth, jump and the time left.
+    throw : bool
+        Raise when the run gives up; else return a result that says why. What it had is saved either way.
+    figures : bool
+        Draw into the folder: the mesh once the part is mounted, all other figures at the end.
+    on_step : callable or None
+        Called with the state after mounting and after each accepted step.
+    errors : callable or None
+        Called with records and summary of a run that reached its end, once all data are written: it may state more
+        errors there.
+    draw : Drawing or None
+        Draws instead of this process.
+
+    Raises
+    ------
+    ResultError
+        If the folder cannot be used.
+    ConvergenceError, GeometryError, MeshError
+        When the run gives up and ``throw`` is True.
+    """
+    on_step, draw = on_step or (lambda state: None), draw or DrawnHere()
+    folder = None if out is None else Folder(Path(out), scene, resume=resume)
+    saved = folder.load() if folder is not None and resume else None
+    wall, cpu = time.perf_counter(), time.process_time()
+    state, recorder = saved if saved is not None else (None, Recorder(scene))
+    wall, cpu = wall - recorder.wall, cpu - recorder.cpu
+    error: Exception | None = None
+    with _Bar(scene, shown=progress) as bar:
+        stepper = Stepper(scene, on_mount=bar.mounting)
+        try:
+            if state is None:
+                state = stepper.start()
+                _keep(folder, state, recorder, wall, cpu)
+                if folder is not None and figures and recorder.snapshots:
+                    draw.mesh(folder.path, scene.name, recorder.snapshots[0])
+                on_step(state)
+            bar.begin(state)
+            while not stepper.finished(state):
+                state = stepper.advance(state)
+                _keep(folder, state, recorder, wall, cpu)
+                on_step(state)
+                bar.update(state, recorder)
+        except (ConvergenceError, GeometryError, MeshError) as failure:
+            error = failure
+    by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
+    recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
+    status = COMPLETED if error is None else GAVE_UP
+    message = "all strokes done"
+    if error is not None:
+        done = None if state is None else scene.program.counted(state.strokes)
+        message = f"{'the part cannot be mounted' if done is None else f'after stroke {done}'}: {error}"
+    times = {"wall time [s]": round(recorder.wall, 3), "CPU time [s]": round(recorder.cpu, 3)}
+    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
+    if state is not None:
+        summary = recorder.summary(state, status, message)
+        summary["error estimates"] |= by_time_step
+        summary["warnings"] += warnings
+    if folder is not None:
+        folder.finish(recorder, summary)
+        if scene.save.vtk and state is not None:
+            _write_vtk(folder.path, state)
+    try:
+        if errors is not None and state is not None and error is None:
+            errors(recorder, summary)
+            summary["wall time [s]"] = round(time.perf_counter() - wall, 3)
+            if folder is not None:
+                folder.finish(recorder, summary)
+    finally:  # who stops waiting for companions loses nothing
+        if folder is not None and figures and recorder.rows:
+            draw.rest(folder.path)
+    if error is not None and throw:
+        raise error
+    return Result(status, message, summary, recorder, state, error)
+
+
+def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, cpu: float) -> None:
+    recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
+    recorder.add(state, wall=recorder.wall)
+    if folder is not None:
+        folder.save(state, recorder)
+
+
+def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
+    """Errors by the time step of rubber with memory, and a warning if they are not known."""
+    if state.memory is None:
+        return {}, []
+    from ngwear.loop.time_step import time_step_errors
+
+    try:
+        return time_step_errors(state), []
+    except ConvergenceError as error:
+        return {}, [f"strokes in two parts gave up ({error}); the error of the time step is not known"]
+
+
+def _write_vtk(path: Path, state: State) -> None:
+    """Write the last state of each stroke of the cycle for ParaView."""
+    import ngsolve as ng
+
+    from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
+
+    stage = state.stage
+    for stroke, phase in zip(stage.scene.program.cycle, state.phases, strict=True):
+        stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+        fields = stage.problem.fields
+        writer = ng.VTKOutput(
+            stage.body.mesh,
+            coefs=[fields[DISPLACEMENT], fields[VOLUMETRIC_STRESS]],
+            names=[DISPLACEMENT, VOLUMETRIC_STRESS.replace(" ", "_")],
+            filename=str(path / f"stroke_{state.strokes}_{stroke.name}"),
+            subdivision=1,
+        )
+        try:
+            writer.Do()
+        except Exception as error:
+            raise ResultError(f"{path}: the VTK file cannot be written: {error}") from error
+
+
+class _Bar:
+    """Progress on the terminal: mounting in per cent, then strokes with depth and jump."""
+
+    def __init__(self, scene: Scene, *, shown: bool) -> None:
+        from tqdm import tqdm
+
+        self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
+        self._scene, self._bar = scene, None
+
+    def __enter__(self) -> _Bar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+
+    def mounting(self, fraction: float) -> None:
+        if self._bar is None:
+            self._bar = self._make(total=100, desc="mounting", unit="%")
+        self._bar.update(round(100 * fraction) - self._bar.n)
+
+    def begin(self, state: State) -> None:
+        if self._bar is not None:
+            self._bar.close()
+        total, done = self._done(self._scene.program.strokes), self._done(state.strokes)
+        self._bar = self._make(total=total, initial=done, desc="wear", unit="stroke")
+
+    def _done(self, strokes: int) -> float:
+        return self._scene.program.counted(strokes)
+
+    def update(self, state: State, recorder: Recorder) -> None:
+        row = recorder.rows[-1]
+        self._bar.update(self._done(state.strokes) - self._bar.n)
+        self._bar.set_postfix_str(
+            f"depth {1e3 * row['maximum depth [mm]']:.1f} µm, {row['strokes in one solve [-]']} a solve"
+        )

@@ -1,0 +1,268 @@
+"""A scene set up on a meshed body: its terms, their loads and its problem."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import ngsolve as ng
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.contact import Contact
+from ngwear.effects.elasticity import Elasticity
+from ngwear.equilibrium.problem import Problem, Support
+from ngwear.errors import SceneError
+from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
+from ngwear.geometry.body import Body
+from ngwear.scene.program import Stroke
+from ngwear.scene.scene import ContactSpec, Scene
+from ngwear.surfaces import WornProfile
+
+if TYPE_CHECKING:  # an effect that the scene does not list is not even imported
+    from ngwear.effects.fluid_pressure import FluidPressure
+    from ngwear.effects.friction import Friction
+    from ngwear.effects.stroke_memory import StrokeMemory
+    from ngwear.fields.background import Background
+
+Array = NDArray[np.float64]
+
+
+class Stage:
+    """The effects of a scene on one mesh; only what the scene lists is built.
+
+    Attributes
+    ----------
+    contacts : dict of str to Contact
+    frictions : dict of str to Friction
+    fluid : FluidPressure or None
+    memory : StrokeMemory or None
+    problem : Problem
+
+    ``background`` is where the scene's memory lives; without one, as while the part is mounted, there is none.
+    """
+
+    def __init__(self, scene: Scene, body: Body, background: Background | None = None) -> None:
+        self.scene, self.body = scene, body
+        rubber = scene.rubber
+        modulus = rubber.shear_modulus
+        self.elasticity = Elasticity(rubber, order=scene.accuracy.order)
+        self.contacts = {
+            spec.name: Contact(
+                spec.name,
+                spec.edges,
+                spec.surface,
+                modulus=modulus,
+                order=scene.accuracy.order,
+                force_controlled=spec.force is not None,
+                wears=spec.wears,
+                counter=WornProfile.of(spec.surface, scene.accuracy.patch) if spec.counter_wear_rate > 0 else None,
+            )
+            for spec in scene.contacts
+        }
+        self.frictions: dict[str, Friction] = {}
+        for spec in scene.contacts:
+            if spec.friction_law is not None:
+                self.frictions[spec.name] = self._friction(spec)
+            if spec.wears and spec.wear_law is not None:
+                from ngwear.effects.pressure_wear import PressureWear
+
+                mu = self.frictions[spec.name].coefficient if spec.name in self.frictions else None
+                wear = PressureWear(spec.wear_law, modulus=modulus, coefficient=mu)
+                self.contacts[spec.name].pressure_wear = wear
+        self.fluid: FluidPressure | None = None
+        if scene.fluid is not None:
+            from ngwear.effects.fluid_pressure import FluidPressure
+
+            self.fluid = FluidPressure(scene.fluid.edges, scene.fluid.inlet, tuple(self.contacts.values()))
+        terms = [self.elasticity, *self.contacts.values(), *self.frictions.values()]
+        if self.fluid is not None:
+            terms.append(self.fluid)
+        self.memory: StrokeMemory | None = None
+        if background is not None:
+            from ngwear.effects.stroke_memory import StrokeMemory
+
+            self.memory = StrokeMemory(rubber, scene.arms, background)
+            terms.append(self.memory)
+        self.problem = Problem(
+            body,
+            Axisymmetric() if scene.axisymmetric else PlaneStrain(),
+            terms,
+            supports=[Support(s.edges, s.x, s.y) for s in scene.supports],
+            order=scene.accuracy.order,
+        )
+
+    def _friction(self, spec: ContactSpec) -> Friction:
+        """The friction of a contact that has a law of it."""
+        scene, contact = self.scene, self.contacts[spec.name]
+        speed = scene.program.cycle[0].speed
+        if scene.may_stick(spec):
+            from ngwear.effects.stick_slip import StickSlip
+
+            return StickSlip(contact, spec.friction_law, speed=speed)
+        from ngwear.effects.friction import FullSliding
+
+        return FullSliding(contact, spec.friction_law, speed=speed, stepped=scene.deactivation is not None)
+
+    def stroke_loads(self, stroke: Stroke) -> dict[str, float]:
+        """Loads of a stroke: every surface in its place, sliding in the stroke's direction, under its pressure."""
+        loads: dict[str, float] = {}
+        for spec in self.scene.contacts:
+            contact = self.contacts[spec.name]
+            loads |= dict.fromkeys(contact.loads, 0.0 if spec.force is None else spec.force)
+            if spec.name in self.frictions:
+                friction = self.frictions[spec.name]
+                way = stroke.travel if friction.remembers else 1.0
+                loads |= dict.fromkeys(friction.loads, stroke.direction * way if spec.slides else 0.0)
+        if self.fluid is not None:
+            loads |= dict.fromkeys(self.fluid.loads, stroke.pressure)
+        return loads
+
+    @property
+    def remembers(self) -> bool:
+        """Whether friction sticks, so that a stroke depends on where the one before it ended."""
+        return any(friction.remembers for friction in self.frictions.values())
+
+    def begin(self, vector: Array) -> None:
+        """Let a stroke begin where another has ended: slip is counted from that state."""
+        state = self.problem.state.vec.FV().NumPy()
+        keep = state.copy()
+        state[:] = vector
+        for friction in self.frictions.values():
+            if friction.remembers:
+                friction.begin()
+        state[:] = keep
+
+    def shares(self, stroke: Stroke) -> dict[str, Array]:
+        """What the contact's nodes slip in the stroke just solved over its travel [-], of each friction that sticks."""
+        sticking = {name: f for name, f in self.frictions.items() if f.remembers}
+        return {name: self.contacts[name].edges_to_nodes(f.slid()) / stroke.travel for name, f in sticking.items()}
+
+    def set_shares(self, shares: dict[str, Array] | None) -> None:
+        """Let wear in the next solve follow these shares; everything slips where none are known."""
+        for name, contact in self.contacts.items():
+            if contact.share is not None:
+                contact.set_share(1.0 if shares is None else shares[name])
+
+    def stretched_guess(self) -> bool:
+        """Stretch an axisymmetric part, at constant volume, until it clears its shafts; False if none overlaps it.
+
+        ``r' = sqrt(r^2 + (a + d)^2 - a^2)`` for an overlap d at the radius a: the exact displacement of an
+        incompressible ring, so that the guess is free of volumetric strain. Letting the part settle from
+        there takes a fifth of the iterations of pushing a shaft in from first touch.
+        """
+        if not self.scene.axisymmetric:
+            return False
+        shafts = [c for c in self.scene.contacts if c.force is None and c.surface.approach[1] > 0.5]
+        growth = 0.0
+        for spec in shafts:
+            overlap = self._overlap(spec)
+            radius = float(self.body.contour.points[self._clearance(spec)[1], 1])
+            growth = max(growth, (radius + overlap) ** 2 - radius**2)
+        if growth == 0.0:
+            return False
+        self.problem.fields[DISPLACEMENT].Set(ng.CF((0, (ng.y**2 + growth) ** 0.5 - ng.y)))
+        return True
+
+    def first_touch(self) -> dict[str, float]:
+        """Loads before mounting: surfaces that would overlap the part drawn back until they just touch it."""
+        loads: dict[str, float] = {}
+        for spec in self.scene.contacts:
+            contact = self.contacts[spec.name]
+            overlap = self._overlap(spec)
+            if spec.force is None:
+                loads |= dict.fromkeys(contact.loads, -overlap)
+            else:
+                loads |= dict.fromkeys(contact.loads, 0.0)
+                self.problem.fields[contact.travel_name].vec[:] = self._travel_to_touch(spec)
+        return self.mounted_loads() | loads
+
+    def mounted_loads(self) -> dict[str, float]:
+        """Loads of the mounted part before the first stroke: no fluid pressure, and nothing has slid yet.
+
+        Full sliding has no such state; a surface in it is mounted sliding, but for rubber that may tear.
+        """
+        loads = self.stroke_loads(self.scene.program.cycle[0])
+        for friction in self.frictions.values():
+            if friction.remembers or self.scene.deactivation is not None:
+                loads |= dict.fromkeys(friction.loads, 0.0)
+        if self.fluid is not None:
+            loads |= dict.fromkeys(self.fluid.loads, 0.0)
+        return loads
+
+    def _clearance(self, spec: ContactSpec) -> tuple[float, int]:
+        """Smallest gap over the contact's edges [mm] and the contour point where it is."""
+        contour = self.body.contour
+        mine = contour.on(spec.edges)
+        touching = mine | np.roll(mine, 1)
+        gap = spec.surface.gap(*contour.points[touching].T)
+        worst = int(np.argmin(gap))
+        return float(gap[worst]), int(np.flatnonzero(touching)[worst])
+
+    def _travel_to_touch(self, spec: ContactSpec) -> float:
+        """Travel along the approach at which a surface under force bites a little and so meets a stiffness [mm]."""
+        ax, ay = spec.surface.approach
+        contour = self.body.contour
+        mine = contour.on(spec.edges)
+        x, y = contour.points[mine | np.roll(mine, 1)].T
+
+        def smallest(travel: float) -> float:
+            return float(spec.surface.gap(x - travel * ax, y - travel * ay).min())
+
+        # Enough to press on the mesh edges beside the nearest point; another ridge may be as high.
+        here = spec.surface.gap(x, y)
+        first = int(here.argmin())
+        beside = here[max(first - 1, 0) : first + 2]
+        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.mounting)
+        bite += 1e-6 * float(contour.lengths.min())
+        travel, reach = 0.0, 10.0 * float(np.ptp(contour.points, axis=0).max())
+        for _ in range(500):  # the gap is a distance: so far the surface can go without passing the place
+            off = smallest(travel) + bite
+            travel += off
+            if abs(off) < 1e-3 * bite:
+                return travel
+            if abs(travel) > reach:
+                break
+        raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "does not meet its edges along its approach")
+
+    def _overlap(self, spec: ContactSpec) -> float:
+        """How far the surface has to be drawn back along its approach to free the part [mm]."""
+        gap, _ = self._clearance(spec)
+        if gap >= 0:
+            return 0.0
+        ax, ay = spec.surface.approach
+        contour = self.body.contour
+        mine = contour.on(spec.edges)
+        x, y = contour.points[mine | np.roll(mine, 1)].T
+        low, high = 0.0, float(np.ptp(contour.points, axis=0).max())
+
+        def smallest(retreat: float) -> float:
+            return float(spec.surface.gap(x + retreat * ax, y + retreat * ay).min())
+
+        if smallest(high) < 0:
+            raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "cannot be drawn back from the part")
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (low, middle) if smallest(middle) >= 0 else (middle, high)
+        return high
+
+    def margins(self) -> dict[str, float]:
+        """How far each contact that slides in full is from waves that grow along it [-], see ``Ripples.margin``."""
+        return {name: f.margin() for name, f in self.frictions.items() if not f.remembers}
+
+    def forces(self) -> dict[str, Array]:
+        """Resultants on the part in the present state, (x, y) [N, or N/mm in plane strain].
+
+        Contact pressure and friction by contact, the fluid, and in axisymmetry the hoop tension's radial
+        resultant; at equilibrium they add up to zero, but for what supports carry.
+        """
+        found = {}
+        for name, contact in self.contacts.items():
+            found[name] = contact.force()
+            if name in self.frictions:
+                found[f"{name} friction"] = self.frictions[name].force()
+        if self.fluid is not None:
+            found["fluid"] = self.fluid.force()
+        if self.scene.axisymmetric:
+            found["hoop"] = np.array([0.0, -self.problem.hoop_force()])
+        return found

@@ -1,0 +1,395 @@
+"""The loop: equilibrium of each stroke, wear, new outline, and a new mesh where one is needed."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.carry import unfold
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
+from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
+from ngwear.geometry.body import Body
+from ngwear.loop.choosing import chosen, laid_out
+from ngwear.loop.drift import steady_cycles
+from ngwear.loop.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
+from ngwear.loop.refinement import outgrown, wanted_size
+from ngwear.loop.remesh import is_due, remesh, still_ahead
+from ngwear.loop.stage import Stage
+from ngwear.loop.state import Phase, State, StrokeReport
+from ngwear.loop.wearing import Wearing
+from ngwear.scene.program import Stroke
+from ngwear.scene.scene import Scene
+from ngwear.wear.control import JumpControl
+from ngwear.wear.cycles import Plan, planned
+from ngwear.wear.strokes import Strokes
+
+Array = NDArray[np.float64]
+log = logging.getLogger(__name__)
+
+NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
+FIRST = 10  # times as long as the first step is the longest one
+LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
+HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
+MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
+
+
+class Stepper:
+    """Run a scene by hand: ``state = stepper.start()``, then ``state = stepper.advance(state)`` until done.
+
+    Parameters
+    ----------
+    scene : Scene
+    on_mount : callable or None
+        Called with the fraction of the mounting that is done.
+
+    Raises
+    ------
+    SceneError
+        If the scene asks for an error: no single run meets one.
+    """
+
+    def __init__(self, scene: Scene, *, on_mount: Callable[[float], None] | None = None) -> None:
+        error = scene.accuracy.error
+        require(
+            error is None,
+            "accuracy.error",
+            error,
+            "is met by several runs: use ngwear.error_estimates.adaptive.run_to_error",
+        )
+        self.scene, self._across = laid_out(scene), scene.accuracy.across
+        self.on_mount = on_mount or (lambda fraction: None)
+        self._losses: ModuleType | None = None
+        if scene.deactivation is not None:
+            from ngwear.loop import deactivation
+
+            self._losses = deactivation
+        warn_if_unstable(self.scene)
+
+    def start(self) -> State:
+        """Mount the part on a coarse mesh, solve each stroke of the cycle once, and refine to the contact.
+
+        Raises
+        ------
+        ConvergenceError
+            If the part cannot be mounted.
+        SceneError
+            If a surface that shall wear the part does not touch it in any stroke.
+        """
+        scene, accuracy = self.scene, self.scene.accuracy
+        stage = Stage(scene, unworn_body(scene, self._across))
+        cycles = scene.program.strokes / len(scene.program.cycle)
+        longest = min(scene.wear.max_jump, max(1, math.ceil(accuracy.longest_jump * cycles)))
+        first = 1 if scene.deactivation is not None else max(1, longest // FIRST)  # what is pulled too hard tears
+        control = JumpControl(accuracy.wear_error, depth=accuracy.depth_error, cycles=first, longest=longest)
+        state = State(stage, [], control, across=self._across)
+        state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
+        problem = stage.problem
+        phases = len(scene.program.cycle)
+        state.work.add(mount(stage, self.on_mount))
+        if self._losses is not None:
+            self._losses.begin(state)
+        for i, stroke in enumerate(scene.program.cycle):
+            stage.begin(problem.state.vec.FV().NumPy())
+            state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5)))
+            state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
+            self.on_mount(0.7 + 0.2 * (i + 1) / phases)
+        refuse_idle_contacts(state)
+        if scene.deactivation is None:
+            self._refine(state)
+        else:
+            self._settle_cycle(state)
+        if scene.arms is not None:
+            self._remember(state)
+        self.on_mount(1.0)
+        return state
+
+    def _refine(self, state: State) -> None:
+        """Mesh anew until the mesh is fine where the strokes of the cycle want it."""
+        ahead = still_ahead(state)
+        while state.ledger.remeshes < 4:
+            vectors, laid = [phase.vector for phase in state.phases], state.stage.scene
+            first = state.across is not None and state.ledger.remeshes == 0  # the mounting's mesh may be too fine, too
+            if state.across is not None:
+                state.stage.scene = chosen(state.stage, vectors, state.across)
+            narrow = state.stage.scene.accuracy.patch < NARROWER * laid.accuracy.patch
+            if not (first or narrow or outgrown(state.stage, vectors, **ahead)):
+                state.stage.scene = laid
+                break
+            remesh(state)
+            self._settle_cycle(state)
+            self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
+        state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
+
+    def _settle_cycle(self, state: State) -> None:
+        """Solve each stroke of the cycle once, on the outline as it is."""
+        state.reports = []
+        for i, stroke in enumerate(self.scene.program.cycle):
+            sliding = self._strokes(i, 0)
+            wearing = Wearing.begin(state, i, sliding)
+            iterations = self._solve_phase(state, i, stroke, sliding)
+            wearing.look()
+            state.reports.append(self._observe(state, i, iterations, sliding))
+
+    def _remember(self, state: State) -> None:
+        """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
+        from ngwear.fields.background import Background
+        from ngwear.loop.cycle_memory import CycleMemory
+
+        scene = self.scene
+        (first, *_), phase = scene.program.cycle, state.phases[0]
+        body = state.stage.body
+        field = wanted_size(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
+        background = Background(Body(body.contour, field))
+        state.stage = stage = Stage(scene, body, background)
+        stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+        stage.begin(phase.vector)
+        stage.problem.set_loads(stage.stroke_loads(first))
+        for term in stage.problem.terms:
+            term.refresh()
+        state.work.add(advance(stage.problem, stage.mounted_loads()))
+        durations = [stroke.duration for stroke in scene.program.cycle]
+        mounted = stage.memory.stress()
+        state.memory = CycleMemory(background, scene.arms, durations, mounted=mounted, rest=scene.program.rest)
+
+    def finished(self, state: State) -> bool:
+        """Whether all strokes of the program are done."""
+        return state.strokes >= self.scene.program.strokes
+
+    def advance(self, state: State) -> State:
+        """Take one step: every stroke of the cycle once, each standing for as many as the control allows.
+
+        A step that fails, or whose error is too large, is taken back and tried with half the cycles.
+
+        Raises
+        ------
+        ConvergenceError, GeometryError, MeshError
+            When a single cycle fails; the state is the last accepted one.
+        """
+        program, most = self.scene.program, math.inf
+        while True:
+            goal = min([m for m in self.scene.marks if m > state.strokes] + [program.strokes])
+            left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
+            wear = self.scene.wear
+            cycles = {"each": 1, "fixed": min(wear.max_jump, left), "jump": state.control.share(left)}[wear.step]
+            cycles = steady_cycles(self.scene, state.strokes, min(cycles, most))
+            saved = state.saved()
+            try:
+                ratio = self._step(state, cycles)
+            except (ConvergenceError, GeometryError, MeshError) as error:
+                if cycles == 1:
+                    state.take_back(saved)
+                    raise
+                log.info("step of %d cycles failed (%s); trying half", cycles, error)
+                ratio = math.inf
+            if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
+                state.take_back(saved)
+                most = state.control.cut(cycles)
+                continue
+            share = (state.strokes - saved["strokes"]) / program.strokes
+            off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)
+            state.control.update(ratio, cycles, off)
+            if state.strokes in (*self.scene.marks, program.strokes):
+                self._look(state)
+            return state
+
+    def _look(self, state: State) -> None:
+        """Report the strokes of the cycle other than the last one on the present outline; changes nothing else."""
+        latest = state.reports[-1].phase
+        for i in range(len(self.scene.program.cycle)):
+            if i != latest:
+                saved = state.phases[i]
+                state.reports.insert(-1, self._seen(state, i, self._next_cycle(state)))
+                state.phases[i] = saved
+        self.stand(state)
+
+    def look_ahead(self, state: State) -> list[StrokeReport]:
+        """Solve the next cycle's strokes on the present outline, in their order; state and memory are theirs then."""
+        plan, reports = self._next_cycle(state), []
+        for i, _ in plan:
+            reports.append(self._seen(state, i, plan))
+            if state.memory is not None:
+                state.memory.leave(state.stage.memory, i)
+        return reports
+
+    def stand(self, state: State) -> None:
+        """Let the part stand as at the end of the last stroke."""
+        problem, latest = state.stage.problem, state.reports[-1].phase
+        problem.set_loads(state.stage.stroke_loads(self.scene.program.cycle[latest]))
+        problem.state.vec.FV().NumPy()[:] = state.phases[latest].vector
+        for term in problem.terms:
+            term.refresh()
+
+    def _next_cycle(self, state: State) -> Plan:
+        kinds = len(self.scene.program.cycle)
+        return planned(kinds, state.strokes, 1, state.strokes + kinds)
+
+    def _seen(self, state: State, index: int, plan: Plan) -> StrokeReport:
+        """A stroke of the cycle on the present outline, without wear."""
+        state.phases[index] = replace(state.phases[index], rate=None)
+        sliding = self._strokes(index, state.strokes)
+        Wearing.begin(state, index, sliding)
+        iterations = self._solve_phase(state, index, self.scene.program.cycle[index], sliding, plan=plan)
+        return self._observe(state, index, iterations, sliding)
+
+    def _step(self, state: State, cycles: int) -> float:
+        """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown).
+
+        It is infinite if something is torn too late, within a jump.
+        """
+        cycle, memory = self.scene.program.cycle, state.memory
+        plan = planned(len(cycle), state.strokes, cycles, self.scene.program.strokes)
+        state.reports = []
+        worn_before, error_before, known = state.ledger.worn, state.ledger.area_error, True
+        begin = state.strokes
+        for k, (i, repeats) in enumerate(plan):
+            sliding = self._strokes(i, begin + k, repeats)
+            later = {j: self._strokes(j, begin + k + 1 + m, n - 1) for m, (j, n) in enumerate(plan[k + 1 :])}
+            outline, iterations, tears = state.contour, 0, True
+            while tears:
+                wearing = Wearing.begin(state, i, sliding, later=later)
+                iterations += self._solve_phase(state, i, cycle[i], sliding, plan=plan)
+                tears = self._losses is not None and self._losses.tear(state, outline, repeats)
+                if tears and repeats > max(1.0, LATE * self.scene.program.strokes / len(cycle)):
+                    return math.inf
+                if tears:
+                    outline, state.ledger.late = state.contour, max(state.ledger.late, repeats - 1)
+            if memory is not None:
+                memory.leave(state.stage.memory, i)
+            seen = self._observe(state, i, iterations, sliding)
+            state.strokes += repeats
+            if self._losses is not None:
+                self._losses.tire(state, repeats, last=k == len(plan) - 1)
+            known &= wearing.take()
+            state.reports.append(
+                replace(
+                    seen,
+                    last_stroke=state.strokes,
+                    repeats=repeats,
+                    contour=state.contour,
+                    counters=state.counters,
+                    ledger=state.ledger.copy(),
+                    cells=state.cells,
+                )
+            )
+        if memory is not None:
+            memory.commit(plan)
+        if state.strokes < self.scene.program.strokes and is_due(state):
+            remesh(state)
+        worn = state.ledger.worn - worn_before
+        if not known:
+            return math.nan
+        return (state.ledger.area_error - error_before) / worn if worn > 0 else 0.0
+
+    def _strokes(self, kind: int, done: int, repeats: int = 0) -> Strokes:
+        """Strokes of a kind, the first of which begins after ``done`` strokes of any."""
+        program = self.scene.program
+        return Strokes(program.slid(done), program.cycle[kind].travel, program.slid(len(program.cycle)), repeats)
+
+    def _solve_phase(
+        self,
+        state: State,
+        index: int,
+        stroke: Stroke,
+        sliding: Strokes,
+        *,
+        plan: Plan = (),
+    ) -> int:
+        """Bring one stroke of the cycle to equilibrium, its wear over ``sliding`` implicit; return iterations.
+
+        ``plan`` is the step's, for the memory.
+        """
+        stage, phase = state.stage, state.phases[index]
+        problem = stage.problem
+        vector = problem.state.vec.FV().NumPy()
+        stage.begin(state.phases[index - 1].vector)
+        problem.set_loads(stage.stroke_loads(stroke))
+        for friction in stage.frictions.values():
+            friction.coefficient.set_state(sliding.middle, stroke.speed)
+        if stage.remembers:
+            from ngwear.loop.lasting_slip import lasting
+
+            stage.set_shares(lasting(self.scene.program.cycle, state.phases, index, sliding.repeats))
+        if state.counters:
+            from ngwear.loop import counter_wear
+
+            counter_wear.place(stage, state.counters, index, sliding)
+        if state.memory is not None:
+            state.memory.enter(stage.memory, plan, index)
+        before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
+        work = Work()
+        guesses = [before] if fresh else [before + repeats * phase.rate, before]
+        for guess in guesses:
+            self._guess(state, guess)
+            for term in problem.terms:
+                term.refresh()
+            if settle(problem, StepOptions(), work).converged:
+                break
+        else:
+            self._approach(state, index, stroke, work, jumps=repeats > 1)
+        state.work.add(work)
+        rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
+        shares = stage.shares(stroke)
+        state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None, shares=shares)
+        return work.iterations
+
+    def _guess(self, state: State, vector: Array) -> None:
+        """Start the next solve from a vector; where elements are lost or wear has made them thin, they are unfolded."""
+        problem = state.stage.problem
+        problem.state.vec.FV().NumPy()[:] = vector
+        if self.scene.deactivation is not None:
+            unfold(problem)
+
+    def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
+        """What there is to see at the stroke's equilibrium."""
+        stage = state.stage
+        return StrokeReport(
+            phase=index,
+            last_stroke=state.strokes,
+            repeats=0,
+            iterations=iterations,
+            contacts={spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed},
+            forces=stage.forces(),
+            heats={name: friction.heat(sliding.travel) for name, friction in stage.frictions.items()},
+            margins=stage.margins(),
+            coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
+            wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
+            counters=state.counters,
+            leaks=stage.fluid is not None and stage.fluid.leaks,
+            leak_pressure=stage.fluid.leak_pressure() if stage.fluid and self.scene.fluid.leak_pressure else None,
+            contour=state.contour,
+            ledger=state.ledger.copy(),
+            cells=state.cells,
+            loaded={} if self._losses is None else self._losses.loaded(stage),
+        )
+
+    def _approach(self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool) -> None:
+        """Reach a stroke's equilibrium in steps: from its last state, else from the stroke before it in the cycle.
+
+        Where the stroke stands for several, hard ways are left early: fewer strokes at once are easier.
+        """
+        stage, cycle = state.stage, self.scene.program.cycle
+        options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
+        problem = stage.problem
+        vector = problem.state.vec.FV().NumPy()
+        self._guess(state, state.phases[index].vector)
+        if not stage.remembers or self.scene.deactivation is not None:
+            try:
+                work.add(relax(problem, options))
+                return
+            except ConvergenceError as error:
+                log.info("%s: trying from the stroke before", error)
+        self._guess(state, state.phases[index - 1].vector)
+        problem.set_loads(stage.stroke_loads(cycle[index - 1]))
+        stage.begin(vector)
+        try:
+            work.add(advance(problem, stage.stroke_loads(stroke), options))
+        except ConvergenceError as error:
+            raise ConvergenceError(
+                f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
+            ) from None

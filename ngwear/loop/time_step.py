@@ -1,0 +1,108 @@
+"""What the time step of rubber with memory errs by: the next cycle once more, each solve's time in two halves.
+
+A solve stands for a stroke, or a part of it, in which the strain is taken to stand still (``cycle_memory``). What the
+means over the halves change tells what it errs by, on the same mesh and outline: nothing else differs.
+
+Taken as of first order: twice that change is stated (``ngwear verify stroke_memory`` compares with steps much finer).
+"""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.loop.state import State
+from ngwear.loop.stepper import Stepper
+from ngwear.results.readings import AREA, BY_TIME_STEP, DEPTH, FRICTION, PEAK
+from ngwear.results.seen_order import relative_errors
+from ngwear.scene.program import whole_name
+
+REMAINS = 2.0  # of first order: the error over what halves change
+Read = dict[str, dict[str, ArrayLike]]
+
+
+def time_step_errors(state: State) -> dict[str, float]:
+    """Relative error of depth, area, pressure and friction by the time step, by their names in the summary.
+
+    Of the depth, it is that of what the zone of the deepest place wears in a cycle: pressures move about within it, and
+    its wear follows them until they are even again. Of the peak pressure, it is that of the mean pressure by load:
+    nodal peaks scatter by more, and so do the ends of contacts, which are left out.
+
+    Parameters
+    ----------
+    state : State
+        Of a run with memory, after its last stroke.
+
+    Raises
+    ------
+    ConvergenceError
+        If a stroke of that cycle has no equilibrium.
+    """
+    try:
+        whole, halves = ahead(state), ahead(in_halves(state))  # from the same start
+    finally:
+        Stepper(state.stage.scene).stand(state)
+    deepest = _deepest(whole)
+    mine, other = (_read(seen, deepest) for seen in (whole, halves))
+    return {f"{name[:-4]} {BY_TIME_STEP}": REMAINS * error for name, error in relative_errors(mine, other).items()}
+
+
+def ahead(state: State) -> State:
+    """The next cycle, with the strokes seen in it as its reports; neither wear nor work of the run's."""
+    there = copy(state)
+    there.work, there.phases, there.memory = copy(state.work), list(state.phases), copy(state.memory)
+    there.reports = Stepper(state.stage.scene).look_ahead(there)
+    return there
+
+
+def in_halves(state: State) -> State:
+    """The same with each stroke, or each part that it is solved in, in two."""
+    there, stage = copy(state), copy(state.stage)
+    accuracy = stage.scene.accuracy
+    stage.scene = replace(stage.scene, accuracy=replace(accuracy, parts=2 * accuracy.parts))
+    there.stage, there.strokes = stage, 2 * state.strokes
+    there.phases = [phase for phase in state.phases for _ in range(2)]
+    there.memory = state.memory.in_halves()
+    return there
+
+
+def _deepest(state: State) -> tuple[str, slice] | None:
+    """Contact and nodes of the zone that wears the deepest place; None if none does."""
+    wearing = [spec.name for spec in state.stage.scene.contacts if spec.wears]
+    if state.depths is None or not wearing:
+        return None
+    place, seen = int(state.depths[0].argmax()), [report.contacts for report in state.reports]
+    away = {name: np.abs(seen[0][name].t - place) for name in wearing}
+    name = min(wearing, key=lambda name: away[name].min())
+    node = int(away[name].argmin())
+    profiles = [contacts[name] for contacts in seen]
+    zones = [(profile.load[zone.nodes].sum(), zone.nodes) for profile in profiles for zone in profile.zones()]
+    around = [found for found in zones if found[1].start <= node < found[1].stop]
+    return (name, max(around, key=lambda found: found[0])[1]) if around else None
+
+
+def _read(state: State, deepest: tuple[str, slice] | None) -> Read:
+    """Means over each stroke that was given, and loads over ways of the cycle, which wear."""
+    scene, out = state.stage.scene, {}
+    cycle = scene.program.cycle
+    for kind in dict.fromkeys(whole_name(stroke.name) for stroke in cycle):
+        mine = [report for report in state.reports if whole_name(cycle[report.phase].name) == kind]
+        for name in mine[0].contacts:
+            out.setdefault(PEAK, {})[f"{kind}: {name}"] = np.mean([_mean_pressure(r.contacts[name]) for r in mine])
+        for name in (name for name in mine[0].forces if name.endswith("friction")):
+            out.setdefault(FRICTION, {})[f"{kind}: {name}"] = np.mean([report.forces[name] for report in mine], axis=0)
+    for name in (spec.name for spec in scene.contacts if spec.wears):
+        loads = sum(cycle[report.phase].travel * report.contacts[name].load for report in state.reports)
+        out.setdefault(AREA, {})[name] = loads.sum()
+        if deepest is not None and name == deepest[0]:
+            out[DEPTH] = {name: loads[deepest[1]].sum()}
+    return out
+
+
+def _mean_pressure(profile: ContactProfile) -> float:
+    """By load [MPa]; 0 out of contact."""
+    return float(profile.pressure @ profile.load / profile.load.sum()) if profile.load.any() else 0.0

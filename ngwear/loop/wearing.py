@@ -1,0 +1,273 @@
+"""The wear of one solve: an outline foreseen, a depth worn within the solve, and the outline after it."""
+
+from __future__ import annotations
+
+import logging
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.contact_profile import ContactProfile
+from ngwear.errors import GeometryError, MeshError
+from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
+from ngwear.geometry.recession import recede, receded, refuse_worn_through
+from ngwear.loop.remesh import remesh
+from ngwear.loop.state import State
+from ngwear.scene.scene import ContactSpec
+from ngwear.wear.archard import worn_share
+from ngwear.wear.backward import error_over_difference, share_of_last
+from ngwear.wear.strokes import Strokes
+
+Array = NDArray[np.float64]
+log = logging.getLogger(__name__)
+
+CALM = 0.1  # error of a step over what it wears, up to which the next one may rely on it
+AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
+
+
+@dataclass
+class Wearing:
+    """The wear of strokes that one solve stands for: ``begin``, solve, ``take``.
+
+    Implicit wear of second order in the step. The outline is foreseen: it moves to where the mean pressure of the last
+    step would take it, so that the rubber is as thin, and lies where, it will at the end of the step's last stroke; the
+    depth of the solve is counted from there. Then ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in ``wear.backward``.
+    Where friction may stick, and after a step whose error is large or not known, it is backward Euler on the outline as
+    it was: of first order, and sound where a contact has only begun to spread.
+
+    Attributes
+    ----------
+    outline : Contour
+        Before the wear.
+    own : array, shape (contacts,)
+        Weight of the pressure at the step's end, 1 - a [-].
+    last : array, shape (contacts, n)
+        Depth at each point of the outline worn by the last step's mean pressure, ``kappa a q_0`` [mm].
+    ahead : array, shape (contacts, n)
+        Depth taken off in the foreseen outline [mm].
+    coming : array, shape (n,)
+        Depth that the step's later strokes are to wear, where the nodes cannot follow to the foreseen outline [mm]: the
+        solve leaves that much air, and no outline lags behind by what half the step wears.
+    """
+
+    state: State
+    index: int
+    sliding: Strokes
+    outline: Contour
+    own: Array
+    last: Array
+    ahead: Array
+    coming: Array
+
+    @classmethod
+    def begin(cls, state: State, index: int, sliding: Strokes, *, later: dict[int, Strokes] | None = None) -> Wearing:
+        """Foresee the outline of a stroke of the cycle and let its contacts wear in the next solve.
+
+        ``later`` are the strokes of other kinds that are to come in this step and lie before the last one of this kind.
+        """
+        scene, phase, outline = state.stage.scene, state.phases[index], state.contour
+        n, count = len(outline), len(scene.contacts)
+        none = np.zeros((count, n))
+        wearing = cls(state, index, sliding, outline, np.ones(count), none, none, np.zeros(n))
+        ways = wearing.ways
+        if scene.wear.scheme == "implicit" and phase.error <= CALM:
+            share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
+            depth = wearing._foreseen(index, sliding)
+            share *= depth.any(axis=1)
+            wearing.own, wearing.last = 1.0 - share, share[:, None] * depth
+            wearing._foresee(depth, later or {})
+        implicit = scene.wear.scheme == "implicit"
+        depth = wearing.last - wearing.ahead + wearing.coming
+        for spec, own, known in zip(scene.contacts, wearing.own, depth, strict=True):
+            contact = state.stage.contacts[spec.name]
+            contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
+            if spec.wears:
+                contact.set_worn(known)
+        return wearing
+
+    @property
+    def halfway(self) -> Contour:
+        """Between the outline and the foreseen one, where a depth sweeps the area of its length times itself.
+
+        By the lengths of the outline before, convex places would wear too deep; by those after, ripples would grow.
+        """
+        return self.outline.moved(0.5 * (self.state.contour.points - self.outline.points))
+
+    @property
+    def ways(self) -> Array:
+        """``int k ds`` over the highest k of each contact [mm]."""
+        return self._ways(self.sliding)
+
+    def _foreseen(self, kind: int, sliding: Strokes) -> Array:
+        """Depth that the mean pressure of a kind's last step wears at the points of the outline [mm], each contact.
+
+        None where friction may stick: what has slipped may stick now.
+        """
+        stage = self.state.stage
+        slides = np.array([not stage.contacts[c.name].slips_in_part for c in stage.scene.contacts])
+        return (slides * self._ways(sliding))[:, None] * self.state.phases[kind].mean
+
+    def _ways(self, sliding: Strokes) -> Array:
+        return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
+
+    def _foresee(self, depth: Array, later: dict[int, Strokes]) -> None:
+        scene, coming = self.state.stage.scene, np.zeros(len(self.outline))
+        for kind, sliding in later.items():
+            if self.state.phases[kind].error <= CALM:
+                coming = coming + self._foreseen(kind, sliding).sum(axis=0)
+        whole = depth.sum(axis=0) + coming
+        try:
+            foreseen = recede(self.outline, whole * self.outline.widths(scene.worn_edges), scene.worn_edges)
+            if len(foreseen) != len(self.outline):
+                raise GeometryError("the outline needs other points")
+            self.state.stage.body.move_to(foreseen)
+        except (GeometryError, MeshError) as error:
+            log.info("%s: the outline is not foreseen", error)
+            self.coming = coming
+            return
+        moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
+        self.ahead = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
+
+    def look(self) -> None:
+        """Note what the present pressures would wear, so that the first step's error is known; takes nothing.
+
+        Nothing where friction may stick: what slips is not known yet.
+        """
+        scene, phase = self.state.stage.scene, self.state.phases[self.index]
+        if self.state.stage.remembers:
+            return
+        width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last)
+        phase.pressure, phase.mean, phase.area, phase.ways = none.copy(), none, np.zeros(len(none)), np.zeros(len(none))
+        for k, spec in enumerate(scene.contacts):
+            if spec.wears:
+                profile, rate = self._rate(spec, {})
+                phase.pressure[k] = worn_share(self.outline, profile, rate * profile.weight) / width
+
+    def _rate(self, spec: ContactSpec, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
+        """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-].
+
+        Explicit steps are the classic ones, by lumped pressures: the sharper ones would break up at smaller steps.
+        """
+        stage = self.state.stage
+        contact = stage.contacts[spec.name]
+        profile = contact.profile()
+        if stage.scene.wear.scheme == "explicit":
+            profile = profile.straight()
+        rate = spec.wear_rate.highest * shares.get(spec.name, 1.0) * profile.load / profile.weight
+        rate *= contact.wear_factor(profile.pressure)
+        return profile, rate / contact.at_nodes(stage.elasticity.volume_ratio())
+
+    def _book_depths(self, worn: Array, error: Array) -> None:
+        """Add a step's depth and its error at the points of the outline to the run's [mm].
+
+        Where a scene lets cycles be jumped, single ones are what it asks for: only jumps err. The greatest depth grows
+        by what it does at the points of this step: those of a new mesh may miss the deepest place of the one before,
+        and that is nothing that a step wears, or errs by.
+        """
+        state = self.state
+        asked = state.stage.scene.wear.step == "jump" and self.sliding.repeats <= 1
+        step = np.stack([worn, 0.0 * error if asked else error])
+        before = np.zeros_like(step) if state.depths is None else state.depths
+        state.depths = before + step
+        (depth, exact), (last, last_exact) = ((d.max(), (d - e).max()) for d, e in (state.depths, before))
+        state.ledger.depth += float(depth - last)
+        state.ledger.depth_error += float((depth - exact) - (last - last_exact))
+
+    def take(self) -> bool:
+        """Take the worn area off the outline; return whether its error is known.
+
+        The error of the area is the difference from the trapezoidal rule at the mesh's nodes, its absolute values over
+        the outline added up: how mesh edges bulge in turn, and settle, is no matter of the steps' length. That of the
+        depth at a point is what this tells of the step itself (``wear.backward``), with its sign: steps that wear too
+        much here and too little there, or then, have partly made up for it.
+
+        Raises
+        ------
+        GeometryError
+            If the outline had to be healed and missed the worn area by it.
+        MeshError
+            If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
+        """
+        state, outline, phase = self.state, self.outline, self.state.phases[self.index]
+        stage, scene = state.stage, state.stage.scene
+        halfway = self.halfway
+        width = halfway.widths(scene.worn_edges)
+        shares = {}
+        if stage.remembers:
+            from ngwear.loop.lasting_slip import lasting
+
+            shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
+        if state.counters:
+            from ngwear.loop import counter_wear
+
+            state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
+        share, off, err = np.zeros((3, len(outline)))
+        pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
+        whole = np.zeros(len(ways))
+        for k, spec in enumerate(scene.contacts):
+            if not spec.wears or ways[k] == 0:
+                continue
+            profile, rate = self._rate(spec, shares)
+            amount = rate * profile.weight
+            mine = worn_share(halfway, profile, amount) / width
+            before = 1.0  # a depth of the last step's, on an outline that has shrunk or grown since
+            if phase.area is not None and phase.mean[k].any():
+                before = phase.area[k] / (phase.mean[k] * width).sum()
+            area = (self.own[k] * ways[k] * mine + before * self.last[k]) * width
+            whole[k] = area.sum() / ways[k]
+            share += area
+            pressure[k], mean[k] = mine, area / ways[k] / width
+            if phase.pressure is not None:
+                difference = area / width - 0.5 * ways[k] * (before * phase.pressure[k] + mine)
+                difference = profile.between_nodes(difference) * width
+                off += difference
+                err += difference * error_over_difference(ways[k], phase.ways[k] if self.own[k] < 1.0 else 0.0)
+        known, error = phase.pressure is not None, float(np.abs(off).sum())
+        phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
+        if known:
+            state.ledger.area_error += error
+        self._book_depths(share / width, err / width)
+        phase.pressure, phase.mean, phase.area, phase.ways = pressure, mean, whole, ways
+        if scene.deactivation is not None:
+            from ngwear.loop import deactivation
+
+            points = receded(outline, share, scene.worn_edges, stage.body.now.inward())
+            state.ledger.worn += float(share.sum())
+            state.ledger.removed += outline.area - polygon_area(points)
+            state.ledger.moment += polygon_moment(outline.points) - polygon_moment(points)
+            deactivation.follow(state, outline, points)
+            return known
+        new = recede(outline, share, scene.worn_edges)
+        removed, worn = outline.area - new.area, float(share.sum())
+        state.ledger.worn += worn
+        if abs(removed - worn) > AREA_GATE * worn:
+            raise GeometryError(
+                f"the outline lost {removed:.4g} mm² where the law wears {worn:.4g} mm²: healing took too much"
+            )
+        state.ledger.removed += removed
+        state.ledger.moment += polygon_moment(outline.points) - polygon_moment(new.points)
+        _follow(state, outline, new)
+        return known
+
+
+def _follow(state: State, outline: Contour, worn: Contour) -> None:
+    """Let the mesh follow to a worn outline; make a new mesh where it cannot, unless the scene forbids it."""
+    body, why = state.stage.body, "the outline needs other points"
+    if len(worn) == len(outline):
+        try:
+            body.move_to(worn)
+            return
+        except MeshError as error:
+            why = str(error)
+    if state.stage.scene.wear.remesh == "never":
+        deepest = np.linalg.norm(outline.points - body.base.points, axis=1).max()
+        raise MeshError(
+            f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; go on with new meshes "
+            "by wear.remesh = 'limit' or 'due', or begin with larger elements (accuracy.patch)"
+        )
+    refuse_worn_through(worn)
+    log.info("%s: a new mesh is needed", why)
+    remesh(state, worn)

@@ -1,0 +1,249 @@
+"""One function at many points: in parallel, resumable, and no failure loses the rest."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+import io
+import os
+import pickle
+import sys
+import traceback
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from ngwear.errors import ResultError, SceneError
+from ngwear.files.files import OutFolder
+from ngwear.parallel.workers import one_thread_pool
+
+IMPORTABLE = "define it at the top of a module; functools.partial(function, fixed) keeps arguments that do not vary"
+
+
+@dataclass(frozen=True)
+class Failure:
+    """What went wrong at a point: the error's class, its message, and the traceback as text."""
+
+    kind: str
+    message: str
+    traceback: str
+
+    @classmethod
+    def of(cls, error: BaseException) -> Failure:
+        """From an exception."""
+        return cls(type(error).__name__, str(error), "".join(traceback.format_exception(error)))
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One point of a sweep.
+
+    Attributes
+    ----------
+    point : object
+    result : object
+        What the function returned; None if it failed.
+    failure : Failure or None
+    restored : bool
+        Whether the result was read from the folder.
+    """
+
+    point: Any
+    result: Any = None
+    failure: Failure | None = None
+    restored: bool = False
+
+    @property
+    def ok(self) -> bool:
+        """Whether there is a result."""
+        return self.failure is None
+
+
+def sweep(
+    function: Callable[[Any], Any],
+    points: Iterable[Any],
+    *,
+    executor: Executor | None = None,
+    workers: int | None = None,
+    folder: Path | str | None = None,
+    resume: bool = False,
+    progress: bool = False,
+) -> list[Outcome]:
+    """Evaluate ``function(point)`` at each point; outcomes in the order of the points.
+
+    A point that raises, or takes its worker process down, comes back as an outcome with a failure; the others go
+    on. As always with processes that are spawned, a script calls this under ``if __name__ == "__main__"``.
+
+    Parameters
+    ----------
+    function : callable
+        Of one point. For processes it must be importable, and what it returns must pickle.
+    points : iterable
+    executor : concurrent.futures.Executor or None
+        Any, such as a Dask client's ``client.get_executor()``; it is left open. By default spawned processes of
+        one thread each.
+    workers : int or None
+        How many of these; by default as many as cores.
+    folder : path or None
+        Each result is written there as soon as it is known, under a digest of function and point.
+    resume : bool
+        Take from the folder what an earlier sweep with this function (its name and fixed arguments; changes of its
+        code are not seen) finished there; what failed is tried again.
+    progress : bool
+        Show a progress bar.
+
+    Raises
+    ------
+    SceneError
+        If there are no points, or function or a point cannot be sent to a process or told from another.
+    ResultError
+        If the folder cannot be used.
+    """
+    points = list(points)
+    _check(points, executor, workers, folder, resume)
+    own = executor is None
+    if own:
+        _check_importable(function)
+    if own or folder is not None:
+        keys = [_digest(function, point) for point in points]
+    store = None if folder is None else _Store(Path(folder))
+    outcomes: list[Outcome | None] = [None] * len(points)
+    if store is not None and resume:
+        outcomes = [store.load(key, point) for key, point in zip(keys, points, strict=True)]
+    waiting = [i for i, outcome in enumerate(outcomes) if outcome is None]
+    with _bar(len(points), len(points) - len(waiting), progress) as step:
+
+        def keep(i: int, result: Any) -> None:
+            if store is not None and not isinstance(result, Failure):
+                result = store.save(keys[i], result)
+            failed = isinstance(result, Failure)
+            outcomes[i] = Outcome(points[i], failure=result) if failed else Outcome(points[i], result)
+            step()
+
+        if own:
+            _in_processes(function, points, waiting, workers or os.cpu_count() or 1, keep)
+        else:
+            for i, error in _feed(executor, function, points, deque(waiting), len(points), keep):
+                keep(i, Failure.of(error))
+    return outcomes
+
+
+def _attempt(function: Callable[[Any], Any], point: Any) -> Any:
+    """What runs in the worker: errors travel as text, since not every exception survives pickling."""
+    try:
+        return function(point)
+    except Exception as error:
+        return Failure.of(error)
+
+
+Keep = Callable[[int, Any], None]
+
+
+def _feed(
+    executor: Executor, function: Any, points: list, waiting: deque[int], most: int, keep: Keep
+) -> list[tuple[int, BaseException]]:
+    """Work off ``waiting``, at most so many at a time, until done or broken; what a broken executor was at is returned.
+
+    Only what is under way is lost with it: the rest stays in ``waiting``.
+    """
+    running: dict[Future, int] = {}
+    lost: list[tuple[int, BaseException]] = []
+    while running or (waiting and not lost):
+        while waiting and not lost and len(running) < most:
+            i = waiting.popleft()
+            try:
+                running[executor.submit(_attempt, function, points[i])] = i
+            except BrokenExecutor as error:
+                lost.append((i, error))
+        done, _ = wait(running, return_when=FIRST_COMPLETED)
+        for future in done:
+            i, error = running.pop(future), future.exception()
+            if isinstance(error, BrokenExecutor):
+                lost.append((i, error))
+            else:
+                keep(i, future.result() if error is None else Failure.of(error))
+    return lost
+
+
+def _in_processes(function: Any, points: list, waiting: Iterable[int], workers: int, keep: Keep) -> None:
+    queue = deque(waiting)
+    while queue:
+        with one_thread_pool(min(workers, len(queue))) as pool:
+            lost = _feed(pool, function, points, queue, workers, keep)
+        for i, _ in lost:  # one of them took its worker down: which one shows when each is alone
+            with one_thread_pool(1) as pool:
+                again = _feed(pool, function, points, deque([i]), 1, keep)
+            for _, error in again:
+                keep(i, Failure.of(error))
+
+
+class _Store:
+    """Results in a folder, one pickle a point, each written at once and whole."""
+
+    def __init__(self, path: Path) -> None:
+        self.folder = OutFolder(path, "", resume=True)
+
+    def load(self, key: str, point: Any) -> Outcome | None:
+        file = self.folder.path / f"{key}.pickle"
+        if not file.exists():
+            return None
+        try:
+            return Outcome(point, pickle.loads(file.read_bytes()), restored=True)
+        except Exception as error:  # what unpickling raises depends on what was pickled
+            raise ResultError(f"{file} of the point {point!r} cannot be read ({error}): delete it") from error
+
+    def save(self, key: str, result: Any) -> Any:
+        """The result, or the failure to write it."""
+        try:
+            data = pickle.dumps(result)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            return Failure.of(error)
+        self.folder.replace(f"{key}.pickle", lambda file: file.write(data))
+        return result
+
+
+def _digest(function: Any, point: Any) -> str:
+    """Of function and point as they pickle."""
+    data = io.BytesIO()
+    pickler = pickle.Pickler(data, protocol=5)
+    pickler.fast = True  # no memo: two equal strings are written alike, whether or not they are one object
+    for what, value in (("function", function), ("point", point)):
+        try:
+            pickler.dump(value)
+        except Exception as error:  # what pickling raises depends on the object
+            raise SceneError(f"sweep.{what}", value, f"cannot be pickled ({error}): {IMPORTABLE}") from error
+    return hashlib.sha256(data.getvalue()).hexdigest()[:32]
+
+
+def _check(points: list, executor: Any, workers: Any, folder: Any, resume: bool) -> None:
+    if not points:
+        raise SceneError("sweep.points", points, "give at least one point")
+    if workers is not None and not (isinstance(workers, int) and workers >= 1):
+        raise SceneError("sweep.workers", workers, "must be a whole number of at least 1")
+    if workers is not None and executor is not None:
+        raise SceneError("sweep.workers", workers, "an executor has its own workers: give one or the other")
+    if resume and folder is None:
+        raise SceneError("sweep.resume", resume, "needs the folder of the earlier sweep")
+
+
+def _check_importable(function: Any) -> None:
+    """A function typed into a session or notebook exists in no file that a spawned process could import."""
+    inner = function
+    while isinstance(inner, functools.partial):
+        inner = inner.func
+    where = getattr(inner, "__module__", type(inner).__module__)
+    if where == "__main__" and not hasattr(sys.modules["__main__"], "__file__"):
+        remedy = f"a worker process cannot import what was typed into a session or notebook: {IMPORTABLE}"
+        raise SceneError("sweep.function", function, remedy)
+
+
+@contextmanager
+def _bar(total: int, done: int, shown: bool) -> Iterator[Callable[[], Any]]:
+    from tqdm import tqdm
+
+    with tqdm(total=total, initial=done, disable=not shown, unit="point", leave=True) as bar:
+        yield bar.update

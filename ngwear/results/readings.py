@@ -1,0 +1,68 @@
+"""What is read off a run, by the names of its errors: two runs are compared by it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ngwear.results.results import EDGE, LEAK
+from ngwear.scene.program import whole_name
+
+Rows = list[dict[str, Any]]
+
+DEPTH, AREA, LOST = "maximum depth [-]", "worn area [-]", "area lost in all [-]"
+PEAK, FRICTION = "peak pressure [-]", "friction force [-]"
+LEAKS = "leak pressure [-]"  # of scenes that ask for it
+WHOLE = {
+    DEPTH: "maximum depth [mm]",
+    AREA: "area removed from the outline [mm^2]",
+    LOST: "area lost in all [mm^2]",  # where elements are lost
+}
+STROKE = {"peak pressure": PEAK, "contact width": "contact width [-]", "friction force": FRICTION}
+BY_TIME_STEP = "by the time step [-]"  # after a quantity: what of its error that is
+PLACES = 17  # of the last half of the run, at which histories are read
+
+
+def reading(rows: Rows) -> dict[str, dict[str, list[float]]]:
+    """What is read off along the last half of a run, by the name of its error: whole, and in each kind of stroke.
+
+    Strokes between those that were solved are interpolated; those looked at without wear are left out. Of a stroke in
+    parts their mean is read. The friction force of a step is that of its mean way: where a law changes it, the history
+    errs by more than its end.
+    """
+    solved = [row for row in rows if row["strokes in one solve [-]"] > 0 or row["stroke [-]"] == 0]
+    parts = {part: [row for row in solved if row["kind [-]"] == part] for part in dict.fromkeys(map(_part, solved))}
+    steps = parts[_part(solved[-1])]  # where all strokes of a step have worn
+    places = np.linspace(0.5, 1.0, PLACES) * solved[-1]["stroke [-]"]
+
+    def history(column: str, of: Rows) -> Any:
+        return np.interp(places, [row["stroke [-]"] for row in of], [row[column] for row in of])
+
+    out = {error: {column: history(column, steps).tolist()} for error, column in WHOLE.items() if column in steps[-1]}
+    for kind in dict.fromkeys(map(whole_name, parts)):
+        mine = [of for part, of in parts.items() if whole_name(part) == kind]
+        for error, column in _of_stroke(mine[-1][-1]):
+            mean = np.mean([history(column, of) for of in mine], axis=0)
+            out.setdefault(error, {})[f"{kind}: {column}"] = mean.tolist()
+    return out
+
+
+def element_edge(rows: Rows) -> float:
+    """Mean edge of the elements in contact along the last half of a run [mm]; 0 if nothing touches there."""
+    late = [row for row in rows if row["stroke [-]"] >= 0.5 * rows[-1]["stroke [-]"]]
+    edges = [row[column] for row in late for column in row if column.endswith(EDGE) and row[column] > 0]
+    return float(np.mean(edges)) if edges else 0.0
+
+
+def _of_stroke(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Name of the error, and column, of all that is read in a single stroke."""
+    for words, error in STROKE.items():
+        yield from ((error, c) for c in row if f" {words} " in c and not c.endswith("[-]"))
+    if LEAK in row:
+        yield LEAKS, LEAK
+
+
+def _part(row: dict[str, Any]) -> str:
+    return row["kind [-]"]

@@ -1,0 +1,138 @@
+"""What a wear run has left in ``result.h5``, read again."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.errors import ResultError
+from ngwear.files.files import FIELDS, get_series
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Outline and contact profiles at one solved stroke, as a run keeps them and as read from ``result.h5``.
+
+    ``time`` [s] is infinite where a stroke has no speed; ``mesh`` is empty but at the first stroke, ``elements`` but at
+    the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
+    """
+
+    stroke: float
+    kind: str
+    outline: Array
+    profiles: dict[str, dict[str, Array]]
+    mesh: dict[str, Array] = field(default_factory=dict)
+    elements: dict[str, Array] = field(default_factory=dict)
+    time: float = math.inf
+
+
+@dataclass(frozen=True)
+class ResultFile:
+    """Contents of ``result.h5``.
+
+    Attributes
+    ----------
+    scene : str
+    outline : array, shape (n, 2)
+        As given, before it was smoothed [mm].
+    edges : tuple of str, length n
+        Name of each of its segments.
+    wear_rates : dict
+        Specific wear rate k of each contact that wears, its mean over the run [mm²/N]; empty in files of before it was
+        kept.
+    worn_edges : tuple of str
+    remembers : bool
+        Whether the rubber has memory.
+    drifts : bool
+        Whether a law of friction or wear changes with the sliding distance.
+    damage : tuple or None
+        Name of the criterion that tears elements and its critical value; None without one.
+    errors : dict of str to float
+        What the run states of its errors, as in ``summary.json``.
+    series : dict of array
+        Columns as in ``series.csv``; row i belongs to snapshot i.
+    snapshots : list of Snapshot
+    """
+
+    scene: str
+    outline: Array
+    edges: tuple[str, ...]
+    wear_rates: dict[str, float]
+    worn_edges: tuple[str, ...]
+    remembers: bool
+    drifts: bool
+    damage: tuple[str, float] | None
+    errors: dict[str, float]
+    series: dict[str, Array]
+    snapshots: list[Snapshot]
+
+    @property
+    def kinds(self) -> list[str]:
+        """The strokes of the cycle by name, in their order."""
+        return list(dict.fromkeys(s.kind for s in self.snapshots))
+
+    def at(self, stroke: float, kind: str) -> Snapshot:
+        """The latest snapshot of a kind whose stroke is nearest."""
+        mine = [s for s in self.snapshots if s.kind == kind]
+        return min(reversed(mine), key=lambda s: abs(s.stroke - stroke))
+
+
+def read_result(folder: Path | str) -> ResultFile:
+    """Read a run's ``result.h5``.
+
+    Raises
+    ------
+    ResultError
+        If the file is missing or damaged.
+    """
+    import h5py
+
+    file = Path(folder) / FIELDS
+    if not file.is_file():
+        raise ResultError(f"{file} does not exist: give the folder of a run that has ended (see ngwear run --out)")
+    try:
+        with h5py.File(file, "r") as h5:
+            snapshots = []
+            for group in h5["strokes"].values():
+                parts = {k: {n: d[()] for n, d in g.items()} for k, g in group.items() if isinstance(g, h5py.Group)}
+                snapshots.append(
+                    Snapshot(
+                        group.attrs["stroke"].item(),
+                        str(group.attrs["kind"]),
+                        group["outline [mm]"][()],
+                        {k: v for k, v in parts.items() if k not in ("mesh", "elements")},
+                        parts.get("mesh", {}),
+                        parts.get("elements", {}),
+                        float(group.attrs.get("time [s]", math.inf)),
+                    )
+                )
+            rate = "specific wear rate [mm^2/N]"
+            worn = {name: group.attrs for name, group in h5.get("contacts", {}).items() if group.attrs[rate] > 0}
+            return ResultFile(
+                scene=str(h5.attrs["scene"]),
+                outline=h5["outline/points [mm]"][()],
+                edges=tuple(h5["outline/edges"].asstr()[()]),
+                wear_rates={name: float(attributes[rate]) for name, attributes in worn.items()},
+                worn_edges=tuple(
+                    dict.fromkeys(str(edge) for attributes in worn.values() for edge in attributes["edges"])
+                ),
+                remembers=bool(h5.attrs.get("memory", False)),
+                drifts=bool(h5.attrs.get("laws over distance", False)),
+                damage=(
+                    (str(h5.attrs["damage criterion"]), float(h5.attrs["critical damage"]))
+                    if "damage criterion" in h5.attrs
+                    else None
+                ),
+                errors=json.loads(h5.attrs.get("summary", "{}")).get("error estimates", {}),
+                series=get_series(h5),
+                snapshots=snapshots,
+            )
+    except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
+        raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error

@@ -1,0 +1,344 @@
+"""What a run leaves on disk: series.csv, result.h5, summary.json and a checkpoint to go on from."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import pickle
+from dataclasses import dataclass, field, fields
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear import __version__
+from ngwear.errors import ResultError
+from ngwear.files.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
+from ngwear.geometry.cells import Fate
+from ngwear.geometry.contour import Contour
+from ngwear.geometry.sizing import divided
+from ngwear.results.result_file import Snapshot
+from ngwear.scene.scene import Scene
+from ngwear.units import UNITS, energy_unit, force_unit
+
+Array = NDArray[np.float64]
+
+
+def fingerprint(scene: Scene) -> str:
+    """Hash of a scene, to tell whether a folder belongs to it."""
+    contour = scene.contour
+    rest = [repr(getattr(scene, f.name)) for f in fields(scene) if f.name != "contour"]
+    content = [contour.points.tobytes(), contour.corners.tobytes(), repr((contour.names, rest)).encode()]
+    return hashlib.sha256(b"".join(content)).hexdigest()
+
+
+POINTS_ALONG = 200  # on a straight worn edge as long as the section: where depth is measured
+LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
+LEAK, EDGE = "leak pressure [MPa]", "element edge in contact [mm]"
+TORN = "area lost in all by tearing [-]"  # what of its error is known separately
+BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
+
+
+def depths(before: Contour, after: Contour) -> Array:
+    """Distance of each point of the unworn outline from the worn one [mm], shape (n,)."""
+    from shapely import STRtree, linestrings, points
+
+    segments = STRtree(linestrings(np.stack([after.points, np.roll(after.points, -1, axis=0)], axis=1)))
+    _, found = segments.query_nearest(points(before.points), return_distance=True, all_matches=False)
+    return found
+
+
+def measured_at(scene: Scene) -> Contour:
+    """The scene's outline with points all along its straight worn edges: a depth is known where there is one."""
+    longest = float(np.ptp(scene.contour.points, axis=0).max()) / POINTS_ALONG
+    return divided(scene.contour, scene.worn_edges, longest)
+
+
+@dataclass
+class Recorder:
+    """Rows and snapshots of a run so far; plain data that a checkpoint carries along.
+
+    ``unworn`` is what depths are measured from: the scene's outline, or that of its elements.
+    """
+
+    scene: Scene
+    rows: list[dict[str, Any]] = field(default_factory=list)
+    snapshots: list[Snapshot] = field(default_factory=list)
+    wall: float = 0.0
+    cpu: float = 0.0
+    unworn: Contour | None = None
+    unworn_area: float = 0.0
+
+    def add(self, state: Any, *, wall: float) -> None:
+        """Add the strokes of the state's last step."""
+        if self.unworn is None:
+            plain = state.cells is None
+            self.unworn = measured_at(self.scene) if plain else state.contour
+            self.unworn_area = self.unworn.area
+        for number, report in enumerate(state.reports):
+            self.rows.append(self._row(state, report, wall))
+            mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else {}
+            self.snapshots.append(self._snapshot(report, mesh))
+
+    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+        scene = self.scene
+        cycle = scene.program.cycle
+        unit = force_unit(scene.axisymmetric)
+        depth = depths(self.unworn, report.contour)
+        ledger = report.ledger
+        row: dict[str, Any] = {
+            "stroke [-]": scene.program.counted(report.last_stroke),
+            "kind [-]": cycle[report.phase].name,
+            "strokes in one solve [-]": report.repeats,  # 0: the outline as it is, without wear
+            "sliding distance [mm]": scene.program.slid(report.last_stroke),
+            "worn area by the law [mm^2]": ledger.worn,
+            "area removed from the outline [mm^2]": ledger.removed,
+            "error estimate of worn area [mm^2]": ledger.area_error,
+            "maximum depth [mm]": float(depth.max()),
+            "error estimate of maximum depth [mm]": abs(ledger.depth_error),
+        }
+        for name in dict.fromkeys(scene.worn_edges):
+            row[f"depth at {name} [mm]"] = float(depth[self.unworn.on((name,))].max())
+        if report.cells is not None:
+            row |= self._book(report)
+        for contact, profile in report.contacts.items():
+            zones = profile.zones()
+            highest = max(zones, key=lambda z: z.peak, default=None)
+            row[f"{contact} peak pressure [MPa]"] = 0.0 if highest is None else highest.peak
+            row[f"{contact} width at the peak [mm]"] = 0.0 if highest is None else highest.width
+            row[f"{contact} contact width [mm]"] = sum(z.width for z in zones)
+            row[f"{contact} contact zones [-]"] = len(zones)
+            row[f"{contact} {EDGE}"] = profile.element_edge
+        for name, counter in report.counters.items():
+            row[f"{name} counter-surface depth [mm]"] = float(counter.depth.max())
+            row[f"{name} counter-surface worn area [mm^2]"] = counter.area
+        for name, force in report.forces.items():
+            row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
+        for name, heat in report.heats.items():
+            row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
+        row |= {f"{name} margin of steady sliding [-]": margin for name, margin in report.margins.items()}
+        row |= {f"{name} friction coefficient [-]": mu for name, mu in report.coefficients.items()}
+        row |= {f"{name} specific wear rate [mm^2/N]": rate for name, rate in report.wear_rates.items()}
+        if report.leak_pressure is not None:
+            row[LEAK], row["leaks first at [-]"] = report.leak_pressure
+        row |= {
+            "leaks [-]": int(report.leaks),
+            "Newton iterations [-]": report.iterations,
+            "solves [-]": state.work.solves,
+            "retries [-]": state.work.retries,
+            "remeshes [-]": ledger.remeshes,
+            "elements [-]": state.stage.body.mesh.ne if report.cells is None else int(report.cells.living.sum()),
+            "wall time [s]": round(wall, 3),
+        }
+        return row
+
+    def _book(self, report: Any) -> dict[str, Any]:
+        """Area that the section has lost by each cause, in all and since the row before, and its elements."""
+        ledger, before = report.ledger, self.rows[-1] if self.rows else {}
+        areas = {"wear": ledger.removed} | {name: ledger.lost[fate] for fate, name in BOOK.items()}
+        out: dict[str, Any] = {f"area lost by {name} [mm^2]": area for name, area in areas.items()}
+        out["area lost in all [mm^2]"] = self.unworn_area - report.cells.area
+        out |= {f"{k[:-7]} in this solve [mm^2]": area - before.get(k, 0.0) for k, area in list(out.items())}
+        counts = np.bincount(report.cells.fate, minlength=len(Fate))
+        out |= {f"elements lost by {name} [-]": int(counts[fate]) for fate, name in LOST.items()}
+        out["elements worn away [-]"] = int(counts[Fate.WORN])
+        return out
+
+    def _snapshot(self, report: Any, mesh: dict[str, Array]) -> Snapshot:
+        profiles = {
+            name: {
+                "reference [mm]": p.reference,
+                "place [mm]": p.place,
+                "pressure [MPa]": p.pressure,
+                "nominal pressure [MPa]": p.load / p.weight,  # what wears
+                "gap [mm]": p.gap,
+            }
+            for name, p in report.contacts.items()
+        }
+        for name, counter in report.counters.items():
+            profiles[name]["counter-surface coordinate [mm]"] = counter.along
+            profiles[name]["counter-surface depth [mm]"] = counter.depth
+        kind = self.scene.program.cycle[report.phase].name
+        last, elements = report.last_stroke, {}
+        if report.cells is not None and last in (0, *self.scene.marks, self.scene.program.strokes):
+            cells = report.cells
+            elements = {"points [mm]": cells.points, "corners": cells.corners, "fate": cells.fate} | report.loaded
+        stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
+        return Snapshot(stroke, kind, report.contour.points, profiles, mesh, elements, time)
+
+    def summary(self, state: Any, status: str, message: str) -> dict[str, Any]:
+        """The run in a few numbers."""
+        scene = self.scene
+        cycle = [s.name for s in scene.program.cycle]
+        unworn = self.unworn or measured_at(scene)
+        depth = depths(unworn, state.contour)
+        ledger = state.ledger
+        out: dict[str, Any] = {
+            "status": status,
+            "message": message,
+            "scene": scene.name,
+            "strokes": scene.program.counted(state.strokes),
+            "worn area [mm^2]": ledger.removed,
+            "worn area by the law [mm^2]": ledger.worn,
+            "maximum depth [mm]": float(depth.max()),
+        }
+        if scene.axisymmetric:
+            out["worn volume [mm^3]"] = 2 * np.pi * ledger.moment
+        for name in dict.fromkeys(scene.worn_edges):
+            out[f"{name} depth [mm]"] = float(depth[unworn.on((name,))].max())
+        if state.cells is not None:
+            out |= {f"area lost by {name} [mm^2]": ledger.lost[fate] for fate, name in BOOK.items()}
+            out["area lost in all [mm^2]"] = self.unworn_area - state.cells.area
+        peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
+        leaks = [LEAK] if self.rows and LEAK in self.rows[-1] else []
+        for kind in cycle:
+            rows = [r for r in self.rows if r["kind [-]"] == kind]
+            for column in peaks + leaks:
+                out[f"first {kind} {column}"] = rows[0][column]
+                out[f"last {kind} {column}"] = rows[-1][column]
+        if peaks:
+            out["peak pressure [MPa]"] = max(r[c] for r in self.rows[-len(cycle) :] for c in peaks)
+        if leaks:
+            under = max(scene.program.cycle, key=lambda stroke: stroke.pressure).name
+            last = [row for row in self.rows if row["kind [-]"] == under][-1]
+            out |= {LEAK: last[LEAK], "leaks first at": last["leaks first at [-]"]}
+        worst = max(ledger.worn, 1e-300)
+        out["warnings"] = self._warnings()
+        out |= {
+            "solves": state.work.solves,
+            "Newton iterations": state.work.iterations,
+            "retries": state.work.retries,
+            "remeshes": ledger.remeshes,
+            "error estimates": {
+                "worn area [-]": ledger.area_error / worst,
+                "maximum depth [-]": abs(ledger.depth_error) / max(float(depth.max()), 1e-300),
+                "area against the law [-]": abs(ledger.removed - ledger.worn) / worst,
+                "area in a remesh [-]": ledger.remesh_jump,
+            },
+            "elements": state.stage.body.mesh.ne,
+            "element edge in the contact [mm]": round(state.stage.scene.accuracy.patch, 6),
+            "unknowns": state.stage.problem.space.ndof,
+            "wall time [s]": round(self.wall, 3),
+            "CPU time [s]": round(self.cpu, 3),
+            "peak memory [MB]": round(peak_memory(), 1),
+            "units": UNITS,
+            "ngwear": __version__,
+        }
+        if scene.deactivation is not None and scene.deactivation.damage is not None:
+            torn = sum(out[f"area lost by {cause} [mm^2]"] for cause in ("tearing", "coming loose"))
+            out["error estimates"]["tearing too late [cycles]"] = ledger.late
+            out["error estimates"][TORN] = torn / max(out["area lost in all [mm^2]"], 1e-300)
+        return out
+
+    def _warnings(self) -> list[str]:
+        """What a reader of the results should know of them."""
+        found = []
+        for spec in self.scene.contacts:
+            column = f"{spec.name} margin of steady sliding [-]"
+            least = min((row[column] for row in self.rows if row.get(column, 0.0) < 0.0), default=0.0)
+            if least < 0.0:
+                found.append(
+                    f"contact '{spec.name}': friction and pressure are so high that steady sliding is unstable "
+                    f"({column} {least:.2g}): waves would run along the surface; what is given is the steady state"
+                )
+        for stroke in self.scene.program.cycle:
+            rows = [row for row in self.rows if row["kind [-]"] == stroke.name and LEAK in row]
+            least = min(rows, key=lambda row: row[LEAK], default=None)
+            if least is not None and least[LEAK] < stroke.pressure:
+                found.append(
+                    f"stroke '{stroke.name}': the seal would leak at '{least['leaks first at [-]']}', whose contact "
+                    f"holds {least[LEAK]:.3g} MPa of the fluid's {stroke.pressure:.3g} MPa at stroke "
+                    f"{least['stroke [-]']}; what is given is the seal as if it held"
+                )
+        return found
+
+
+def _deformed_mesh(state: Any, phase: int) -> dict[str, Array]:
+    """Deformed vertices and triangles of one stroke of the cycle."""
+    from ngwear.effects.base import DISPLACEMENT
+    from ngwear.geometry.section import mesh_arrays
+
+    stage = state.stage
+    points, triangles = mesh_arrays(stage.body.mesh) if state.cells is None else stage.body.triangles()
+    u = state.phases[phase].vector[stage.problem.part(DISPLACEMENT)].reshape(2, -1)[:, : len(points)].T
+    return {"points [mm]": points + u, "triangles": triangles}
+
+
+class Folder(OutFolder):
+    """The folder of a wear run, with the checkpoint that it goes on from."""
+
+    def __init__(self, path: Path, scene: Scene, *, resume: bool) -> None:
+        self.scene_hash = fingerprint(scene)
+        super().__init__(path, CHECKPOINT, resume=resume)
+
+    def load(self) -> tuple[Any, Recorder] | None:
+        """Return the state and the records of the run to go on with, or None if it has not begun."""
+        file = self.path / CHECKPOINT
+        if not file.exists():
+            return None
+        try:
+            saved = pickle.loads(file.read_bytes())
+            scene_hash, state, recorder = saved["scene"], saved["state"], saved["recorder"]
+        except Exception as error:
+            raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
+        if scene_hash != self.scene_hash:
+            raise ResultError(f"{self.path} holds a run of another scene (or of a changed one): give another folder")
+        return state, recorder
+
+    def save(self, state: Any, recorder: Recorder) -> None:
+        """Write checkpoint and series."""
+        content = pickle.dumps({"scene": self.scene_hash, "state": state, "recorder": recorder})
+        self.replace(CHECKPOINT, lambda file: file.write(content))
+        self.write_series(recorder.rows)
+
+    def finish(self, recorder: Recorder, summary: dict[str, Any]) -> None:
+        """Write the summary, the series and the fields."""
+        self.clear()
+        if recorder.rows:
+            self.write_series(recorder.rows)
+        self.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
+        self.replace(FIELDS, lambda file: _hdf5(file, recorder, summary))
+
+
+def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
+    import h5py
+
+    scene = recorder.scene
+    with h5py.File(file, "w") as h5:
+        h5.attrs["ngwear"] = __version__
+        h5.attrs["scene"] = scene.name
+        h5.attrs["units"] = json.dumps(UNITS)
+        h5.attrs["summary"] = json.dumps(summary)
+        outline = h5.create_group("outline")
+        outline["points [mm]"] = scene.contour.points
+        outline["edges"] = np.array(scene.contour.names, dtype=h5py.string_dtype())
+        outline.attrs["provenance"] = scene.contour.provenance
+        h5.attrs["memory"] = scene.arms is not None
+        h5.attrs["laws over distance"] = any(
+            c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
+        )
+        damage = None if scene.deactivation is None else scene.deactivation.damage
+        if damage is not None:
+            h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
+        contacts = h5.create_group("contacts")
+        for spec in scene.contacts:
+            group = contacts.create_group(spec.name)
+            rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
+            mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
+            group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
+            if spec.wear_law is not None:
+                group.attrs["wear law"] = spec.wear_law.words
+        put_series(h5, recorder.rows)
+        strokes = h5.create_group("strokes")
+        for number, snapshot in enumerate(recorder.snapshots):
+            group = strokes.create_group(f"{number:05d}")
+            group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
+            group.attrs["time [s]"] = snapshot.time
+            group["outline [mm]"] = snapshot.outline
+            for contact, profile in snapshot.profiles.items():
+                for name, values in profile.items():
+                    group[f"{contact}/{name}"] = values
+            for part, content in (("mesh", snapshot.mesh), ("elements", snapshot.elements)):
+                for name, values in content.items():
+                    group[f"{part}/{name}"] = values

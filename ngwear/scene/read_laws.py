@@ -1,0 +1,123 @@
+"""The values ``friction``, ``specific_wear_rate`` and ``wear_law`` of a contact: numbers, or tables that say which."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from ngwear.errors import SceneError
+from ngwear.laws import (
+    ByPressure,
+    FrictionalEnergyWear,
+    FrictionLaw,
+    Lubrication,
+    PowerWear,
+    Product,
+    SaturatingWear,
+    Stribeck,
+    ThresholdWear,
+    WearLaw,
+    WearRate,
+)
+from ngwear.scene.tables import get, known, record, typed
+
+_LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
+_WEAR_LAWS = {
+    "power": PowerWear,
+    "threshold": ThresholdWear,
+    "saturating": SaturatingWear,
+    "frictional energy": FrictionalEnergyWear,
+}
+
+
+def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
+    """A number, or a law of a table with ``law`` and the law's values; files start from ``folder``.
+
+    ``law = "lubrication"`` takes the rows ``distance`` and ``coefficient``, a ``file`` that holds them, or a file whose
+    four phases are to be ``fitted``; ``law = "product"`` a list ``factors`` of such tables.
+
+    Raises
+    ------
+    SceneError
+        For an unknown law or key, or a value out of range.
+    """
+    if not isinstance(value, dict):
+        return typed(place, value, "float")
+    kind, values = _chosen(place, value, _LAWS)
+    if kind == "product":
+        return _product(place, values, folder)
+    if kind == "lubrication" and "fitted" in values:
+        from ngwear.laws.fit import fit_lubrication  # SciPy's optimizers are slow to load
+
+        return _of_file(place, values, "fitted", folder, lambda path: fit_lubrication(path).law)
+    return _table(place, values, folder, _LAWS[kind])
+
+
+def read_wear_rate(place: str, value: Any, folder: Path) -> WearRate | float:
+    """A number, or a table with the rows ``distance`` and ``rate`` or a ``file`` that holds them.
+
+    Raises
+    ------
+    SceneError
+        For an unknown key or a value out of range.
+    """
+    if not isinstance(value, dict):
+        return typed(place, value, "float")
+    return _table(place, {key: inner for key, inner in value.items() if key != "source"}, folder, WearRate)
+
+
+def read_wear_law(place: str, value: Any, folder: Path) -> WearLaw:
+    """A table with ``law`` and the law's values.
+
+    Raises
+    ------
+    SceneError
+        For an unknown law or key, or a value out of range.
+    """
+    if not isinstance(value, dict):
+        raise SceneError(place, value, 'must be a table, such as { law = "power", exponent = 2.0 }')
+    kind, values = _chosen(place, value, _WEAR_LAWS)
+    return _table(place, values, folder, _WEAR_LAWS[kind])
+
+
+def _chosen(place: str, table: dict[str, Any], laws: dict[str, Any]) -> tuple[str, dict[str, Any]]:
+    """Which of the laws a table asks for, and its values."""
+    kind = get(table, place, "law")
+    if not isinstance(kind, str) or kind not in laws:
+        raise SceneError(f"{place}.law", kind, f"must be one of {list(laws)}")
+    return kind, {key: value for key, value in table.items() if key not in ("law", "source")}
+
+
+def _product(place: str, values: dict[str, Any], folder: Path) -> Product:
+    known(f"{place}.", values, {"factors"})
+    factors = get(values, place, "factors")
+    if not isinstance(factors, list) or not all(isinstance(factor, dict) for factor in factors):
+        raise SceneError(f"{place}.factors", factors, "must be a list of laws, each a table with its law")
+    laws = tuple(read_friction(f"{place}.factors[{i}]", factor, folder) for i, factor in enumerate(factors))
+    return _placed(f"{place}.", lambda: Product(factors=laws))
+
+
+def _table(place: str, values: dict[str, Any], folder: Path, law: Any) -> Any:
+    if "file" in values and hasattr(law, "read"):
+        return _of_file(place, values, "file", folder, law.read)
+    return _placed(f"{place}.", lambda: record(law, place, values))
+
+
+def _of_file(place: str, values: dict[str, Any], key: str, folder: Path, read: Callable[[Path], Any]) -> Any:
+    known(f"{place}.", values, {key})
+    path = folder / typed(f"{place}.{key}", values[key], "str")
+    return _placed(f"{place}.{key}, ", lambda: read(path))
+
+
+def _placed(before: str, build: Callable[[], Any]) -> Any:
+    """Say of a law's complaint in which contact and file it is."""
+    try:
+        return build()
+    except SceneError as error:
+        if error.place.startswith(before):
+            raise
+        inner = error.place
+        for own in ("friction.", "specific_wear_rate.", "wear_law."):
+            inner = inner.removeprefix(own)
+        raise SceneError(f"{before}{inner}", error.value, error.remedy) from None

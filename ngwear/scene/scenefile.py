@@ -1,0 +1,138 @@
+"""Scenes as TOML files: a serialisation of the classes in ``ngwear.scene.scene``."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from ngwear.errors import SceneError
+from ngwear.geometry.contour_files import read_contour
+from ngwear.scene.pin_scene import KIND as PIN
+from ngwear.scene.pin_scene import PinScene
+from ngwear.scene.program import Program, Stroke
+from ngwear.scene.read_deactivation import read_deactivation
+from ngwear.scene.read_laws import read_friction, read_wear_law, read_wear_rate
+from ngwear.scene.read_material import read_arms, read_material
+from ngwear.scene.read_pin import pin_scene
+from ngwear.scene.scene import Accuracy, ContactSpec, FluidSpec, Save, Scene, SupportSpec, Wear
+from ngwear.scene.tables import coordinate, get, known, record, subtable, tables, typed
+from ngwear.surfaces import Cylinder, Plane, RigidSurface
+
+TABLES = {
+    *("scene", "contour", "material", "contact", "fluid", "support"),
+    *("program", "accuracy", "wear", "deactivation", "save"),
+}
+KINDS = {"axisymmetric": True, "plane strain": False}
+
+
+def _rename(function: Callable[..., Any], **names: str) -> Callable[..., Any]:
+    def build(**values: Any) -> Any:
+        return function(**{names.get(key, key): value for key, value in values.items()})
+
+    return build
+
+
+_SURFACES: dict[str, tuple[Callable[..., RigidSurface], set[str]]] = {
+    "rod": (Plane.rod, {"diameter"}),
+    "bore": (Plane.bore, {"diameter"}),
+    "plane": (_rename(Plane, normal="normal_vector"), {"point", "normal"}),
+    "cylinder": (Cylinder, {"centre", "radius", "push"}),
+}
+_SURFACE_OPTIONAL = {"push"}
+_PAIRS = {"point", "normal", "centre", "push"}
+
+
+def read_scene(path: Path | str) -> Scene | PinScene:
+    """Read a scene of any kind; relative file names in it start from the scene's folder.
+
+    Raises
+    ------
+    SceneError
+        For an unknown or missing key, a value out of range, or a file that is not TOML.
+    GeometryError
+        If the outline is not usable.
+    """
+    path = Path(path)
+    try:
+        data = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SceneError("scene", str(path), f"cannot be read: {error.strerror}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SceneError("scene", str(path), f"is not valid TOML: {error}") from None
+    head = subtable(data, "scene")
+    known("scene.", head, {"name", "kind"})
+    kind, name = get(head, "scene", "kind"), str(head.get("name", path.stem))
+    if not isinstance(kind, str) or kind not in (*KINDS, PIN):
+        raise SceneError("scene.kind", kind, f"must be one of {[*KINDS, PIN]}")
+    return pin_scene(data, name, path.parent) if kind == PIN else _wear_scene(data, name, path.parent)
+
+
+def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
+    known("", data, TABLES)
+    outline = subtable(data, "contour")
+    known("contour.", outline, {"file"})
+    return Scene(
+        name=name,
+        axisymmetric=KINDS[data["scene"]["kind"]],
+        contour=read_contour(folder / str(get(outline, "contour", "file"))),
+        material=read_material(subtable(data, "material")),
+        prony=read_arms(data["material"]["prony"]) if "prony" in data["material"] else None,
+        contacts=tuple(_contact(i, table, folder) for i, table in enumerate(tables(data, "contact"))),
+        fluid=record(FluidSpec, "fluid", data["fluid"]) if "fluid" in data else None,
+        supports=tuple(record(SupportSpec, f"support[{i}]", t) for i, t in enumerate(tables(data, "support"))),
+        program=_program(subtable(data, "program")),
+        accuracy=_accuracy(data.get("accuracy", {})),
+        wear=record(Wear, "wear", data.get("wear", {})),
+        deactivation=read_deactivation(data["deactivation"]) if "deactivation" in data else None,
+        save=record(Save, "save", data.get("save", {})),
+    )
+
+
+def _accuracy(table: Any) -> Accuracy:
+    """Knobs one by one, or all of them by the name of a preset."""
+    if not isinstance(table, dict) or "preset" not in table:
+        return record(Accuracy, "accuracy", table)
+    known("accuracy.", table, {"preset", *Accuracy.__dataclass_fields__})
+    for key in table.keys() - {"preset"}:
+        raise SceneError(f"accuracy.{key}", table[key], f"the preset {table['preset']!r} chooses it: leave either out")
+    return Accuracy.preset(typed("accuracy.preset", table["preset"], "str"))
+
+
+def _contact(number: int, table: dict[str, Any], folder: Path) -> ContactSpec:
+    place = f"contact[{number}]"
+    if not isinstance(table, dict):
+        raise SceneError(place, table, "must be a table")
+    values = dict(table)
+    surface = get(values, place, "surface")
+    if not isinstance(surface, dict):
+        raise SceneError(f"{place}.surface", surface, 'must be a table, such as { type = "rod", diameter = 22.2 }')
+    surface = dict(surface)
+    values["surface"] = _surface(f"{place}.surface", surface)
+    laws = (("friction", read_friction), ("specific_wear_rate", read_wear_rate), ("wear_law", read_wear_law))
+    for key, read in laws:
+        if key in values:
+            values[key] = read(f"{place}.{key}", values[key], folder)
+    return record(ContactSpec, place, values)
+
+
+def _surface(place: str, table: dict[str, Any]) -> RigidSurface:
+    kind = table.pop("type", None)
+    if not isinstance(kind, str) or kind not in _SURFACES:
+        raise SceneError(f"{place}.type", kind, f"must be one of {list(_SURFACES)}")
+    build, keys = _SURFACES[kind]
+    known(f"{place}.", table, keys)
+    for key in sorted(keys - _SURFACE_OPTIONAL - set(table)):
+        get(table, place, key)
+    return build(**{key: coordinate(f"{place}.{key}", value, pair=key in _PAIRS) for key, value in table.items()})
+
+
+def _program(table: dict[str, Any]) -> Program:
+    known("program.", table, {"strokes", "stroke", "rest"})
+    strokes = get(table, "program", "strokes")
+    cycle = tuple(record(Stroke, f"program.stroke[{i}]", t) for i, t in enumerate(tables(table, "stroke")))
+    if isinstance(strokes, bool) or not isinstance(strokes, int):
+        raise SceneError("program.strokes", strokes, "must be a whole number")
+    rest = {"rest": typed("program.rest", table["rest"], "float")} if "rest" in table else {}
+    return Program(strokes=strokes, cycle=cycle, **rest)

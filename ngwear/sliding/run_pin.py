@@ -1,0 +1,175 @@
+"""Run a pin on a plate at all its speeds, with files, pictures, progress and resumption."""
+
+from __future__ import annotations
+
+import functools
+import json
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import IO, Any
+
+from ngwear import __version__
+from ngwear.files.files import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
+from ngwear.parallel.sweep import Outcome, sweep
+from ngwear.results.seen_order import relative_errors
+from ngwear.scene.pin_scene import KIND, PinScene
+from ngwear.sliding.pin import COARSER, PinSlide, slide_pin
+from ngwear.units import UNITS
+
+POINTS = "points"
+Pair = tuple[PinSlide, PinSlide]
+READINGS: dict[str, Callable[[PinSlide], float]] = {
+    "friction coefficient [-]": lambda slide: slide.friction,
+    "maximum depth [-]": lambda slide: slide.depth,
+    "contact area [-]": lambda slide: slide.patch.area,
+    "peak pressure [-]": lambda slide: slide.peak,
+}
+ORDERS = dict.fromkeys(READINGS, 2.0)  # of convergence
+
+
+def run_pin(
+    scene: PinScene,
+    *,
+    out: Path | str,
+    resume: bool = False,
+    progress: bool = False,
+    workers: int | None = None,
+    figures: bool = True,
+) -> dict[str, Any]:
+    """Slide at every speed of the scene, two at a time, and write series, fields, summary and figures.
+
+    A speed that fails does not lose the others: the summary's status is then ``"gave up"`` and its message names it.
+
+    Parameters
+    ----------
+    scene : PinScene
+    out : path
+        Folder; what each speed found is kept there as soon as it is known.
+    resume : bool
+        Go on with the speeds that are missing.
+    progress : bool
+        Show a progress bar.
+    workers : int or None
+        Processes; by default as many as cores.
+    figures : bool
+        Draw the figures.
+
+    Returns
+    -------
+    dict
+        As in ``summary.json``.
+
+    Raises
+    ------
+    ResultError
+        If the folder cannot be used.
+    """
+    wall = time.perf_counter()
+    folder = OutFolder(Path(out), POINTS, resume=resume)
+    slide = functools.partial(slide_pin, scene.pin, mesh=scene.mesh, vtk=folder.path if scene.vtk else None)
+    points = {"folder": folder.path / POINTS, "resume": resume, "workers": workers, "progress": progress}
+    outcomes = sweep(slide, scene.speeds, **points)
+    pairs = [o.result for o in outcomes if o.ok]
+    summary = _summary(scene, outcomes, pairs, time.perf_counter() - wall)
+    folder.clear()
+    folder.write_series([row(*pair) for pair in pairs])
+    folder.replace(FIELDS, lambda file: _hdf5(file, scene, pairs, summary))
+    folder.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
+    if figures and pairs:
+        from ngwear.plots.pin import plot_pin
+
+        plot_pin(folder.path)
+    return summary
+
+
+def row(coarse: PinSlide, fine: PinSlide) -> dict[str, float]:
+    """One line of ``series.csv``."""
+    return {
+        "speed [mm/s]": fine.speed,
+        "friction coefficient [-]": fine.friction,
+        "from surface friction [-]": fine.surface_friction,
+        "from the pressure [-]": fine.internal_friction,
+        "heat of the slip over load and track [-]": fine.slip_work,
+        "heat in the rubber over load and track [-]": fine.dissipation,
+        "penetration [mm]": fine.depth,
+        "contact area [mm²]": fine.patch.area,
+        "peak pressure [MPa]": fine.peak,
+        "friction on the coarse mesh [-]": coarse.friction,
+        "penetration on the coarse mesh [mm]": coarse.depth,
+        "elements [-]": fine.elements,
+        "elements in contact [-]": int((fine.faces.pressure > 0).sum()),
+        "solves [-]": coarse.work.solves + fine.work.solves,
+        "CPU time [s]": fine.cpu_seconds,
+    }
+
+
+def readings(slides: list[PinSlide]) -> dict[str, dict[str, list[float]]]:
+    """What is read off at all speeds, by the name of its error."""
+    return {error: {error: [read(slide) for slide in slides]} for error, read in READINGS.items()}
+
+
+def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
+    """Relative error of what is read off, in the mean square of the speeds: each whole, then its parts by their names.
+
+    Of elements and columns (the time steps) from the two meshes of each speed; of the arms that are folded away their
+    bound, at the worst speed. What is integrated over the contact, or fitted to many of its faces, errs by the square
+    of what the strains do, and time steps are of second order.
+    """
+    folded = max(scene.mesh.folding(scene.pin.series, fine.speed).bound for _, fine in pairs)
+    coarse, fine = (readings([pair[k] for pair in pairs]) for k in (0, 1))
+    levels = relative_errors(fine, coarse, ratio=COARSER, orders=ORDERS)
+    return (
+        {name: error + folded for name, error in levels.items()}
+        | {f"{name[:-4]} by mesh and time steps [-]": error for name, error in levels.items()}
+        | {"stress by arms folded away [-]": folded}
+    )
+
+
+def _summary(scene: PinScene, outcomes: list[Outcome], pairs: list[Pair], wall: float) -> dict[str, Any]:
+    failed = [f"{o.point:g} mm/s: {o.failure.message}" for o in outcomes if not o.ok]
+    summary: dict[str, Any] = {
+        "status": GAVE_UP if failed else COMPLETED,
+        "message": "; ".join(failed) or "all speeds done",
+        "scene": scene.name,
+        "speeds done [-]": len(pairs),
+    }
+    fine = [pair[1] for pair in pairs]
+    if pairs:
+        works = [slide.work for pair in pairs for slide in pair]
+        energy = max(abs((s.dissipation + s.slip_work) / s.friction - 1) for s in fine)
+        summary |= {
+            "maximum depth [mm]": max(s.depth for s in fine),
+            "penetration, largest less smallest [mm]": max(s.depth for s in fine) - min(s.depth for s in fine),
+            "peak pressure [MPa]": max(s.peak for s in fine),
+            "highest friction coefficient [-]": max(s.friction for s in fine),
+            "lowest friction coefficient [-]": min(s.friction for s in fine),
+            "worn volume [mm³]": 0.0,
+            "solves": sum(w.solves for w in works),
+            "retries": sum(w.retries for w in works),
+            "error estimates": estimates(scene, pairs)
+            | {
+                "friction, between two meshes [-]": max(abs(b.friction / a.friction - 1) for a, b in pairs),
+                "penetration, between two meshes [-]": max(abs(b.depth / a.depth - 1) for a, b in pairs),
+                "friction, energy against force [-]": energy,
+            },
+        }
+    cpu = sum(s.cpu_seconds for s in fine)
+    return summary | {"wall time [s]": round(wall, 3), "CPU time [s]": round(cpu, 3)}
+
+
+def _hdf5(file: IO[bytes], scene: PinScene, pairs: list[Pair], summary: dict[str, Any]) -> None:
+    import h5py
+
+    with h5py.File(file, "w") as h5:
+        h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = __version__, scene.name, KIND
+        h5.attrs["thickness [mm]"] = scene.pin.thickness
+        h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(summary)
+        put_series(h5, [row(*pair) for pair in pairs])
+        for number, (_, slide) in enumerate(pairs):
+            group = h5.create_group(f"speeds/{number:03d}")
+            group.attrs["speed [mm/s]"] = slide.speed
+            group["edge of the contact [mm]"] = slide.patch.edge
+            group["faces/corners, deformed [mm]"] = slide.faces.corners
+            group["faces/centres, undeformed [mm]"] = slide.faces.reference
+            group["faces/pressure [MPa]"] = slide.faces.pressure
