@@ -40,7 +40,7 @@ from ngwear.loop.cycle_memory import CycleMemory
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.time_step import ahead
 from ngwear.materials import MooneyRivlin, PronySeries
-from ngwear.results.results import readings
+from ngwear.results import readings
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import ContactSpec, FluidSpec, Scene, SupportSpec, Wear
