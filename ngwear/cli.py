@@ -16,7 +16,7 @@ from ngwear.errors import NgwearError, ResultError, SceneError
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
 BESIDE = (
-    "ngwear.error_estimates.companion",
+    "ngwear.error_estimates.coarser_runs",
     "ngwear.plots.wear",
     "h5py",
     "matplotlib.backends.backend_agg",
@@ -111,9 +111,9 @@ def _run(options: argparse.Namespace) -> int:
     from ngwear.parallel.workers import Worker
 
     worker = None if options.alone else Worker(*BESIDE)  # loads while this process does
-    from ngwear.files.files import COMPLETED
+    from ngwear.files.result_folder import COMPLETED
     from ngwear.scene.pin_scene import PinScene
-    from ngwear.scene.scenefile import read_scene
+    from ngwear.scene.read_scene import read_scene
 
     scene = read_scene(options.scene)
     if options.accuracy is not None:
@@ -130,10 +130,10 @@ def _run(options: argparse.Namespace) -> int:
 
         summary = run(scene, **how, throw=False).summary
     else:
-        from ngwear.error_estimates.companion import run_stated
+        from ngwear.error_estimates.coarser_runs import run_stated
 
         if scene.accuracy.error is not None:
-            from ngwear.error_estimates.adaptive import run_to_error as run_stated
+            from ngwear.error_estimates.run_to_error import run_to_error as run_stated
         summary = run_stated(scene, **how, throw=False, worker=worker).summary
     if summary["status"] != COMPLETED:
         print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
@@ -196,10 +196,10 @@ def _verify(options: argparse.Namespace) -> int:
 def _explain(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
-    from ngwear.explanation.assumed import Assumed
+    from ngwear.explanation.assumptions import Assumed
     from ngwear.explanation.text import lines
     from ngwear.scene.pin_scene import PinScene
-    from ngwear.scene.scenefile import read_scene
+    from ngwear.scene.read_scene import read_scene
 
     scene, assumed = read_scene(options.scene), Assumed().replaced(options.assume)
     if isinstance(scene, PinScene):
@@ -218,7 +218,7 @@ def _explain(options: argparse.Namespace) -> int:
 
 def _cost(options: argparse.Namespace) -> int:
     from ngwear.error_estimates.cost import cost
-    from ngwear.scene.scenefile import read_scene
+    from ngwear.scene.read_scene import read_scene
 
     scene = read_scene(options.scene)
     found = cost(scene, budget=options.budget, folder=options.out, progress=not options.quiet)

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ngwear.geometry.contour import Contour
-from ngwear.scene.scenefile import read_scene
+from ngwear.geometry.outline import Contour
+from ngwear.scene.read_scene import read_scene
 
 TESTS = Path(__file__).parent
 FOLDERS = ("unit", "verification", "stability", "regression", "benchmarks")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ngwear.loop.run import run
 from ngwear.plots.schemes import draw_schemes
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 HERE = Path(__file__).parent
 MESHES = (0.1, 0.05, 0.025)

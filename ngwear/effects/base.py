@@ -15,7 +15,7 @@ from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.meshed import Meshed
 
 if TYPE_CHECKING:  # no memory, no import of it
-    from ngwear.fields.background import Background, Seat
+    from ngwear.fields.background_mesh import Background, Seat
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ class Unknowns:
 
     def seat(self, background: Background) -> Seat:
         """The body on a background that keeps its memory."""
-        from ngwear.fields.background import Seat
+        from ngwear.fields.background_mesh import Seat
 
         displacement = self.state[DISPLACEMENT]
         return Seat(

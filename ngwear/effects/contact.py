@@ -14,7 +14,7 @@ from ngwear.effects.base import DISPLACEMENT, Unknowns
 from ngwear.effects.contact_profile import ContactProfile, EdgeNodes, nodal_pressure
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.surfaces import RigidSurface, WornProfile
 
 Array = NDArray[np.float64]

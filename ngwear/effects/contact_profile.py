@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,7 @@ from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
 from ngwear.effects.invariants import Invariants
 from ngwear.effects.memory import Memory, step_factors
 from ngwear.errors import SceneError
-from ngwear.fields.stream import StreamGrid
+from ngwear.fields.streamlines import StreamGrid
 from ngwear.fields.transfer import PointSearch
 from ngwear.materials import Hyperelastic, PronySeries
 
@@ -27,7 +27,7 @@ class SteadyMemory(Memory):
     R_i is integrated exactly for an S that is linear between the columns of the grid, one sweep an arm, and
     Q_i taken half-way between them, where the slope of such an S is right to second order. A solve takes ``share``
     of the arms' stiffness implicitly and the rest as a known tensor, ``h = sum Q_i - share S``;
-    ``equilibrium.steady`` repeats until h agrees with S.
+    ``equilibrium.steady_sliding`` repeats until h agrees with S.
 
     On a straight track the material enters relaxed and undeformed: the grid must reach upstream to where nothing
     happens yet. On a circular one it enters as it left, relaxed for the rest of the way around, undeformed there:

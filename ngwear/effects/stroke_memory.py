@@ -6,12 +6,12 @@ import ngsolve as ng
 
 from ngwear.effects.base import Array, Unknowns
 from ngwear.effects.memory import Memory
-from ngwear.fields.background import Background
+from ngwear.fields.background_mesh import Background
 from ngwear.materials import Hyperelastic, PronySeries
 
 
 class StrokeMemory(Memory):
-    """Mean overstress of the arms over one stroke, ``share S + h`` (see ``ngwear.loop.cycle_memory``).
+    """Mean overstress of the arms over one stroke, ``share S + h`` (see ``ngwear.loop.memory_over_cycles``).
 
     Takes no part in time steps: what a solve needs is told by ``hold``.
 

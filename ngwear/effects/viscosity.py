@@ -10,7 +10,7 @@ import numpy as np
 from ngwear.effects.base import Array, Unknowns
 from ngwear.effects.memory import Memory, step_factors
 from ngwear.errors import SceneError
-from ngwear.fields.background import Background
+from ngwear.fields.background_mesh import Background
 from ngwear.materials import Hyperelastic, PronySeries
 
 

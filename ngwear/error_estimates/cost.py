@@ -16,15 +16,15 @@ from pathlib import Path
 from typing import Any
 
 from ngwear import __version__
-from ngwear.error_estimates.climb import Choice, climb, confirm
 from ngwear.error_estimates.cost_runs import DEPTH, PEAK, Limited, Point, measure
-from ngwear.error_estimates.knobs import Knob, at, changes, knobs
+from ngwear.error_estimates.cost_study import Study
+from ngwear.error_estimates.cost_table import as_dict, table
+from ngwear.error_estimates.cost_text import paragraph
 from ngwear.error_estimates.ladder import STOPPED, Measurement, Setting, told
-from ngwear.error_estimates.report import as_dict, table
-from ngwear.error_estimates.study import Study
-from ngwear.error_estimates.words import paragraph
+from ngwear.error_estimates.settings import Knob, at, changes, knobs
+from ngwear.error_estimates.settings_search import Choice, climb, confirm
 from ngwear.errors import SceneError
-from ngwear.files.files import GAVE_UP, OutFolder
+from ngwear.files.result_folder import GAVE_UP, OutFolder
 from ngwear.parallel.sweep import sweep
 from ngwear.parallel.workers import one_thread_pool
 from ngwear.scene.pin_scene import PinScene

@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from ngwear.error_estimates.climb import Choice
+from ngwear.error_estimates.cost_study import TARGETS, Study
+from ngwear.error_estimates.cost_table import kind_of
+from ngwear.error_estimates.cost_text import name_of
 from ngwear.error_estimates.ladder import rung_of
-from ngwear.error_estimates.report import kind_of
-from ngwear.error_estimates.study import TARGETS, Study
-from ngwear.error_estimates.words import name_of
+from ngwear.error_estimates.settings_search import Choice
 from ngwear.plots.style import COLOURS
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from typing import Any
 
 from ngwear.error_estimates.ladder import STOPPED, Measurement
 from ngwear.errors import NgwearError
-from ngwear.files.files import COMPLETED, GAVE_UP, peak_memory
-from ngwear.results.results import LEAK
+from ngwear.files.result_folder import COMPLETED, GAVE_UP, peak_memory
+from ngwear.results.recorder import LEAK
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from ngwear.files.files import COMPLETED
+from ngwear.files.result_folder import COMPLETED
 
 STOPPED = "stopped"
 Setting = tuple[int, ...]  # a rung of each ladder

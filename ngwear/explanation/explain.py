@@ -6,17 +6,17 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
-from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.assumptions import Assumed
 from ngwear.laws import Constant
-from ngwear.loop.choosing import chosen, laid_out
-from ngwear.loop.drift import friction_range
+from ngwear.loop.element_sizes import chosen, laid_out
+from ngwear.loop.law_changes import friction_range
 from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.scene import ContactSpec, Scene
 from ngwear.wear.archard import critical_distance
 
 if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
     from ngwear.equilibrium.problem import Problem
-    from ngwear.explanation.pressing import Pressing
+    from ngwear.explanation.contact_pressures import Pressing
     from ngwear.loop.stage import Stage
 
 
@@ -40,9 +40,9 @@ def explain(
     MeshError
         If the section cannot be meshed.
     """
-    from ngwear.explanation.brought import costs
-    from ngwear.explanation.left_out import left_out
-    from ngwear.explanation.pressing import press
+    from ngwear.explanation.contact_pressures import press
+    from ngwear.explanation.effect_costs import costs
+    from ngwear.explanation.neglected_effects import left_out
     from ngwear.loop.mounting import unworn_body
     from ngwear.loop.stage import Stage
 
@@ -140,8 +140,8 @@ def solver_in_words(problem: Problem, unsymmetric: Sequence[str]) -> str:
 
 def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
     """Memory of what effects keep from step to step [MB], without their share of the matrix."""
-    from ngwear.explanation.brought import MEGABYTE
-    from ngwear.explanation.pressing import history_points
+    from ngwear.explanation.contact_pressures import history_points
+    from ngwear.explanation.effect_costs import MEGABYTE
 
     strokes, outline = len(scene.program.cycle), len(stage.body.contour)
     found = {}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ngwear.explanation.assumed import Assumed
-from ngwear.explanation.pin_left_out import left_out
+from ngwear.explanation.assumptions import Assumed
+from ngwear.explanation.neglected_effects_pin import left_out
 from ngwear.scene.pin_scene import KIND, PinScene
 
 
@@ -19,7 +19,7 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
     assumed : Assumed or None
         Constants that the scene does not give.
     """
-    from ngwear.explanation.brought import MEGABYTE, costs
+    from ngwear.explanation.effect_costs import MEGABYTE, costs
     from ngwear.explanation.explain import solver_in_words
     from ngwear.sliding.pin import PinStage, coarsened
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from ngwear.errors import MeshError
 from ngwear.geometry import nodal, section
-from ngwear.geometry.contour import Array, Contour
 from ngwear.geometry.harmonic import HarmonicFill
 from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.outline import Array, Contour
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 FINER = (1.0, 2.0, 4.0)  # how much less the outline may turn along an element edge: a curved one cuts its corner

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.outline import Array, Contour
 
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from ngwear.errors import MeshError
 from ngwear.geometry.body import Outline
 from ngwear.geometry.cells import HOLE, Cells
-from ngwear.geometry.contour import Array, Contour
 from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.outline import Array, Contour
 
 Index = NDArray[np.intp]
 FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry import section
 from ngwear.geometry.cells import Cells, outlined
-from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.outline import Array, Contour
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 Index = NDArray[np.intp]

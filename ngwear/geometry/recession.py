@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.outline import Array, Contour
 from ngwear.geometry.sizing import SizeField
 
 OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when an outline is healed

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import MeshError
-from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.outline import Array, Contour
 from ngwear.geometry.sizing import SizeField
 
 MIN_ANGLE = 12.0  # degrees; the mesher usually reaches 28

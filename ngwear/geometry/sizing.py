@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.outline import Array, Contour
 
 
 @dataclass(frozen=True)

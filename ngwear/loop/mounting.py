@@ -40,9 +40,9 @@ def warn_if_unstable(scene: Scene) -> None:
 def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody:
     """The unworn section, meshed for mounting; ``across`` as of ``mounting_field``."""
     if scene.deactivation is not None:
-        from ngwear.loop import deactivation
+        from ngwear.loop import lost_elements
 
-        return deactivation.element_body(scene)
+        return lost_elements.element_body(scene)
     return Body(unworn_outline(scene), mounting_field(scene, across))
 
 

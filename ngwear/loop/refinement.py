@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.sizing import SizeField, smoothed
 from ngwear.loop.stage import Stage
 from ngwear.scene.scene import ContactSpec, Scene

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
-from ngwear.files.files import COMPLETED, GAVE_UP
+from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
+from ngwear.results.recorder import Folder, Recorder
 from ngwear.results.result_file import Snapshot
-from ngwear.results.results import Folder, Recorder
 from ngwear.scene.scene import Scene
 
 
@@ -179,7 +179,7 @@ def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
     """Errors by the time step of rubber with memory, and a warning if they are not known."""
     if state.memory is None:
         return {}, []
-    from ngwear.loop.time_step import time_step_errors
+    from ngwear.loop.time_step_error import time_step_errors
 
     try:
         return time_step_errors(state), []

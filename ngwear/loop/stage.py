@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # an effect that the scene does not list is not even imported
     from ngwear.effects.fluid_pressure import FluidPressure
     from ngwear.effects.friction import Friction
     from ngwear.effects.stroke_memory import StrokeMemory
-    from ngwear.fields.background import Background
+    from ngwear.fields.background_mesh import Background
 
 Array = NDArray[np.float64]
 

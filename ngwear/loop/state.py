@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.equilibrium.stepping import Work
 from ngwear.geometry.cells import Cells, Fate
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.stage import Stage
 from ngwear.surfaces import WornProfile
-from ngwear.wear.control import JumpControl
+from ngwear.wear.jump_control import JumpControl
 
 if TYPE_CHECKING:  # no memory, no import of it
-    from ngwear.fields.background import Background
-    from ngwear.loop.cycle_memory import CycleMemory
+    from ngwear.fields.background_mesh import Background
+    from ngwear.loop.memory_over_cycles import CycleMemory
 
 Array = NDArray[np.float64]
 

@@ -11,23 +11,23 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.carry import unfold
+from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
 from ngwear.geometry.body import Body
-from ngwear.loop.choosing import chosen, laid_out
-from ngwear.loop.drift import steady_cycles
+from ngwear.loop.element_sizes import chosen, laid_out
+from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.loop.refinement import outgrown, wanted_size
-from ngwear.loop.remesh import is_due, remesh, still_ahead
+from ngwear.loop.remeshing import is_due, remesh, still_ahead
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
-from ngwear.loop.wearing import Wearing
+from ngwear.loop.wear_step import Wearing
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
-from ngwear.wear.control import JumpControl
-from ngwear.wear.cycles import Plan, planned
-from ngwear.wear.strokes import Strokes
+from ngwear.wear.cycle_jumps import Plan, planned
+from ngwear.wear.jump_control import JumpControl
+from ngwear.wear.sliding_distance import Strokes
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -60,15 +60,15 @@ class Stepper:
             error is None,
             "accuracy.error",
             error,
-            "is met by several runs: use ngwear.error_estimates.adaptive.run_to_error",
+            "is met by several runs: use ngwear.error_estimates.run_to_error.run_to_error",
         )
         self.scene, self._across = laid_out(scene), scene.accuracy.across
         self.on_mount = on_mount or (lambda fraction: None)
         self._losses: ModuleType | None = None
         if scene.deactivation is not None:
-            from ngwear.loop import deactivation
+            from ngwear.loop import lost_elements
 
-            self._losses = deactivation
+            self._losses = lost_elements
         warn_if_unstable(self.scene)
 
     def start(self) -> State:
@@ -138,8 +138,8 @@ class Stepper:
 
     def _remember(self, state: State) -> None:
         """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
-        from ngwear.fields.background import Background
-        from ngwear.loop.cycle_memory import CycleMemory
+        from ngwear.fields.background_mesh import Background
+        from ngwear.loop.memory_over_cycles import CycleMemory
 
         scene = self.scene
         (first, *_), phase = scene.program.cycle, state.phases[0]
@@ -312,13 +312,13 @@ class Stepper:
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
         if stage.remembers:
-            from ngwear.loop.lasting_slip import lasting
+            from ngwear.loop.slip_over_cycles import lasting
 
             stage.set_shares(lasting(self.scene.program.cycle, state.phases, index, sliding.repeats))
         if state.counters:
-            from ngwear.loop import counter_wear
+            from ngwear.loop import counter_surface
 
-            counter_wear.place(stage, state.counters, index, sliding)
+            counter_surface.place(stage, state.counters, index, sliding)
         if state.memory is not None:
             state.memory.enter(stage.memory, plan, index)
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import ResultError, SceneError
-from ngwear.files.files import OutFolder
+from ngwear.files.result_folder import OutFolder
 from ngwear.parallel.workers import one_thread_pool
 
 IMPORTABLE = "define it at the top of a module; functools.partial(function, fixed) keeps arguments that do not vary"

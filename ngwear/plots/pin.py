@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files.files import get_series
+from ngwear.files.result_folder import get_series
 from ngwear.plots.style import write
 from ngwear.scene.pin_scene import KIND
 

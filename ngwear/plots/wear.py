@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.plots.book import book_figure, has_book
+from ngwear.plots.area_balance import book_figure, has_book
 from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.laws import has_laws, law_figure
 from ngwear.plots.sections import box, draw_planes, living, sections, show

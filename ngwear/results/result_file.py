@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files.files import FIELDS, get_series
+from ngwear.files.result_folder import FIELDS, get_series
 
 Array = NDArray[np.float64]
 

@@ -39,13 +39,13 @@ class Accuracy:
         up to 0.5 for fewer and less for more: the stresses' error asks for what is missing.
     order : int
         Polynomial order of the displacement: 1, 2 or 3, of which 3 converges fastest where all is smooth; the contact's
-        edges are not. ``ngwear cost`` compares them on a scene's own elements: see ``error_estimates.knobs``.
+        edges are not. ``ngwear cost`` compares them on a scene's own elements: see ``error_estimates.settings``.
     stress_error : float or None
         Error indicator of the stresses over the energy norm, up to which elements outside the contacts stay
         coarse [-], all of them with 1; 0.05 unless given.
     wear_error : float or None
         Relative error of worn area that the cycle jump aims at; the estimate errs on the safe side. Laws of friction
-        and wear may change by five times as much in a jump (``ngwear.loop.drift``). 0.02 unless given.
+        and wear may change by five times as much in a jump (``ngwear.loop.law_changes``). 0.02 unless given.
     longest_jump : float or None
         Longest cycle jump over the program's cycles [-]; five times ``wear_error`` unless given. Where pressures change
         slowly, jumps end with their growth from step to step before ``wear_error`` holds them back, and what they err
@@ -66,7 +66,7 @@ class Accuracy:
         0.05, and the longest jump with the edge.
     error : float or None
         Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
-        (``ngwear.error_estimates.adaptive``).
+        (``ngwear.error_estimates.run_to_error``).
     """
 
     patch: float | None = None

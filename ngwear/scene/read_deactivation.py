@@ -7,7 +7,7 @@ from typing import Any
 from ngwear.errors import SceneError
 from ngwear.laws.damage import CRITERIA, Criterion
 from ngwear.scene.deactivation import Deactivation, DistortionFilter
-from ngwear.scene.tables import record
+from ngwear.scene.toml_values import record
 
 PLACE = "deactivation"
 

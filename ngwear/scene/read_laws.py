@@ -20,7 +20,7 @@ from ngwear.laws import (
     WearLaw,
     WearRate,
 )
-from ngwear.scene.tables import get, known, record, typed
+from ngwear.scene.toml_values import get, known, record, typed
 
 _LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
 _WEAR_LAWS = {

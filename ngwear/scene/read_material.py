@@ -8,7 +8,7 @@ from typing import Any
 from ngwear.errors import SceneError
 from ngwear.materials import WLF, Arrhenius, Hyperelastic, MooneyRivlin, NeoHooke, PronySeries
 from ngwear.materials.library import relaxation_of
-from ngwear.scene.tables import get, known, record, typed
+from ngwear.scene.toml_values import get, known, record, typed
 
 _MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
     "neo-hooke": NeoHooke,

@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass, field
 
 from ngwear.errors import require
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.laws import FrictionLaw, WearLaw, WearRate, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.scene.accuracy import Accuracy
-from ngwear.scene.contradictions import refuse_in_contact, refuse_in_scene
+from ngwear.scene.checks import refuse_in_contact, refuse_in_scene
 from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.program import Program
 from ngwear.surfaces import RigidSurface

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.steady_memory import SteadyMemory
-from ngwear.equilibrium.carry import carry
-from ngwear.equilibrium.steady import SteadyOptions, solve_steady
+from ngwear.equilibrium.state_transfer import carry
+from ngwear.equilibrium.steady_sliding import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import Work, relax
 from ngwear.errors import SceneError
-from ngwear.fields.stream import StreamGrid
+from ngwear.fields.streamlines import StreamGrid
 from ngwear.geometry.sizing import SizeField
 from ngwear.materials import Hyperelastic, PronySeries
 from ngwear.sliding.block import Block, march, meshed_block

@@ -15,7 +15,7 @@ from ngwear.equilibrium.problem import Problem, Support
 from ngwear.errors import ConvergenceError
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.sizing import SizeField
 from ngwear.materials import Hyperelastic
 from ngwear.surfaces import Cylinder

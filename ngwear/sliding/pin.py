@@ -16,13 +16,13 @@ from ngwear.effects.contact_patch import Faces, PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.steady_memory import SteadyMemory
-from ngwear.equilibrium.carry import carry_solid
 from ngwear.equilibrium.problem import Problem, Support
-from ngwear.equilibrium.steady import SteadyOptions, solve_steady
+from ngwear.equilibrium.state_transfer import carry_solid
+from ngwear.equilibrium.steady_sliding import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Solid
-from ngwear.fields.stream import StreamGrid
+from ngwear.fields.streamlines import StreamGrid
 from ngwear.geometry.sheet import Sheet
 from ngwear.scene.pin_scene import Pin, PinMesh
 from ngwear.sliding.patch import Patch, contact_patch

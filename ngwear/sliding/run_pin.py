@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import IO, Any
 
 from ngwear import __version__
-from ngwear.files.files import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
+from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
 from ngwear.parallel.sweep import Outcome, sweep
-from ngwear.results.seen_order import relative_errors
+from ngwear.results.richardson import relative_errors
 from ngwear.scene.pin_scene import KIND, PinScene
 from ngwear.sliding.pin import COARSER, PinSlide, slide_pin
 from ngwear.units import UNITS

@@ -7,8 +7,8 @@ import numpy as np
 from ngsolve.meshes import MakeStructured2DMesh
 
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Array, Contour
 from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.outline import Array, Contour
 from ngwear.geometry.sizing import SizeField
 
 

@@ -10,8 +10,8 @@ from ngwear.effects.base import DISPLACEMENT
 from ngwear.equilibrium.newton import NewtonOptions, solve
 from ngwear.errors import ConvergenceError
 from ngwear.geometry.cells import Cells, Index, Mask, outlined
-from ngwear.geometry.contour import Array
 from ngwear.geometry.element_body import ElementBody
+from ngwear.geometry.outline import Array
 from ngwear.laws.damage import Criterion
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State
@@ -20,7 +20,7 @@ from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
 from ngwear.surfaces import Plane
-from ngwear.wear.control import JumpControl
+from ngwear.wear.jump_control import JumpControl
 
 TIGHT = NewtonOptions(tolerance=1e-11, max_iterations=40)
 

@@ -1,11 +1,12 @@
 """The errors that runs state of themselves against true ones: the shipped scenes.
 
-A run states what two coarser ones tell of it (``ngwear.error_estimates.companion``); the pin on a plate, what the coarser of its two
-meshes does. True is what it differs by from a run with elements of a quarter of the edge (``FINER``), and jumps that
-may err by a quarter as much, read at the same places and in the same mean square; of the pin, and of the leak pressure,
-of a half. The finer run errs, too: of an error of first order, one with a quarter of everything shows 3/4 and one with
-a half 1/2, so that an exact estimate would have an effectivity of 1.3 and 2; of second order, 1.07 and 1.3. Wanted is
-0.5 to 3. Below 0.1 % neither can be told from the chance of where a new mesh falls: both count as at least that.
+A run states what two coarser ones tell of it (``ngwear.error_estimates.coarser_runs``); the pin on a plate, what the
+coarser of its two meshes does. True is what it differs by from a run with elements of a quarter of the edge
+(``FINER``), and jumps that may err by a quarter as much, read at the same places and in the same mean square; of the
+pin, and of the leak pressure, of a half. The finer run errs, too: of an error of first order, one with a quarter of
+everything shows 3/4 and one with a half 1/2, so that an exact estimate would have an effectivity of 1.3 and 2; of
+second order, 1.07 and 1.3. Wanted is 0.5 to 3. Below 0.1 % neither can be told from the chance of where a new mesh
+falls: both count as at least that.
 
 Both take the same time step: what that errs by is held against much finer ones in ``stroke_memory``.
 
@@ -19,11 +20,11 @@ it was at 2.9 to 3.1, against a quarter it is at 2.2. The pin's contact area was
 gaps outside, which scatter on the coarser mesh; told by the pressures inside it is at 1.8 (``sliding.patch``).
 
 These are not blind: the bounds of the order, what counts as scatter and which coarsest run is left out
-(``ngwear.results.seen_order``), the pin's order, what its contact's edge is told by, the share of what is torn, and that no
-less of the depth's error is stated than the jumps tell, were settled with these scenes' errors in view. So were the
-shaft's longest jump (with 0.12 its contact's width is at 0.35) and that friction is read along the last half (at the
-end alone, the seal that remembers is at 2.9 to 3.2). At other levels, and on other scenes, expect more to miss, widths
-of contacts and coarse levels first.
+(``ngwear.results.richardson``), the pin's order, what its contact's edge is told by, the share of what is torn, and
+that no less of the depth's error is stated than the jumps tell, were settled with these scenes' errors in view. So were
+the shaft's longest jump (with 0.12 its contact's width is at 0.35) and that friction is read along the last half (at
+the end alone, the seal that remembers is at 2.9 to 3.2). At other levels, and on other scenes, expect more to miss,
+widths of contacts and coarse levels first.
 
 Takes one to two hours of one core, most of it the finest runs of both seals and of the pin.
 """
@@ -33,11 +34,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from ngwear.error_estimates.companion import COARSER, coarser, scaled, stated
+from ngwear.error_estimates.coarser_runs import COARSER, coarser, scaled, stated
 from ngwear.loop.run import Result
 from ngwear.loop.run import run as run_scene
-from ngwear.results.readings import reading
-from ngwear.results.seen_order import relative_errors
+from ngwear.results.quantities_of_interest import reading
+from ngwear.results.richardson import relative_errors
 from ngwear.scene.scene import Scene
 from ngwear.sliding.pin import slide_pin
 from ngwear.sliding.run_pin import estimates as pin_estimates

@@ -30,13 +30,13 @@ from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder, WornProfile
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
-from ngwear.wear.control import JumpControl
 from ngwear.wear.fretting import Fretting, Motion, Scar
+from ngwear.wear.jump_control import JumpControl
 
 PAIR_MODULUS = 200_000.0 / (2 * (1 - 0.3**2))  # E* [MPa]
 MATERIAL = NeoHooke(shear=PAIR_MODULUS / 4, bulk_modulus=PAIR_MODULUS / 4 * 1e4)

@@ -12,7 +12,7 @@ where the fluid's pressure surpasses it) that is what the seal holds in each str
 
 from __future__ import annotations
 
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke

@@ -20,16 +20,16 @@ from scipy.sparse import csr_array
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.elasticity import Elasticity
-from ngwear.equilibrium.keep import keep
+from ngwear.equilibrium.lost_elements_transfer import keep
 from ngwear.equilibrium.newton import solve
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.cells import Cells, Fate, Mask, outlined
-from ngwear.geometry.contour import Array
 from ngwear.geometry.element_body import ElementBody
+from ngwear.geometry.outline import Array
 from ngwear.laws.damage import MaximumPrincipalStress
-from ngwear.loop.deactivation import lose
+from ngwear.loop.lost_elements import lose
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.materials import NeoHooke

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.laws import FrictionLaw, Lubrication, WearRate
 from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke

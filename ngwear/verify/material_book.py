@@ -21,7 +21,7 @@ from ngwear.geometry.cells import Cells
 from ngwear.laws.damage import MaximumPrincipalStress
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.state import State
-from ngwear.results.results import BOOK, LOST
+from ngwear.results.recorder import BOOK, LOST
 from ngwear.scene.deactivation import DistortionFilter
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Scene

@@ -26,11 +26,11 @@ from numpy.typing import NDArray
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.viscosity import Viscosity
-from ngwear.equilibrium.energy_book import EnergyBook
+from ngwear.equilibrium.energy_balance import EnergyBook
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import NeoHooke, PronySeries
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch

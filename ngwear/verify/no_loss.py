@@ -17,9 +17,9 @@ import numpy as np
 
 from ngwear.effects.base import VOLUMETRIC_STRESS
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
-from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.outline import Array, Contour
 from ngwear.laws.damage import TensileNormalStress
-from ngwear.loop.deactivation import element_body
+from ngwear.loop.lost_elements import element_body
 from ngwear.loop.stage import Stage
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke

@@ -26,9 +26,9 @@ from scipy.optimize import brentq
 
 from ngwear.errors import GeometryError
 from ngwear.geometry.cells import Cells, Fate
-from ngwear.geometry.contour import Array
+from ngwear.geometry.outline import Array
 from ngwear.laws.damage import MaximumPrincipalStress, TensileNormalStress
-from ngwear.loop.deactivation import exhaustion, tear
+from ngwear.loop.lost_elements import exhaustion, tear
 from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
 from ngwear.scene.scene import SupportSpec

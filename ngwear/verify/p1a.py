@@ -23,7 +23,7 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import advance, relax
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch

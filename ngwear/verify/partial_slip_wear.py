@@ -35,7 +35,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke

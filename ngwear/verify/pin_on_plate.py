@@ -21,7 +21,7 @@ import numpy as np
 from ngwear.errors import SceneError
 from ngwear.plots.pin import read_pin
 from ngwear.scene.pin_scene import PinScene
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 from ngwear.sliding.run_pin import run_pin
 from ngwear.verify.base import Check
 

@@ -22,14 +22,14 @@ from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import Contact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.viscosity import Viscosity
-from ngwear.equilibrium.carry import carry
 from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.state_transfer import carry
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
 from ngwear.errors import ConvergenceError
-from ngwear.fields.background import Background, Seat
+from ngwear.fields.background_mesh import Background, Seat
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import MooneyRivlin, PronySeries
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch

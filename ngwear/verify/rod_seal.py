@@ -20,13 +20,13 @@ import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import SceneError
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.run import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.state import StrokeReport
 from ngwear.results.result_file import Snapshot
+from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Scene
-from ngwear.scene.scenefile import read_scene
 from ngwear.verify.base import Check, Stopwatch
 
 CASE = "rod_seal"

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from ngwear.loop.run import Result
 from ngwear.loop.run import run as run_scene
-from ngwear.results.results import depths
+from ngwear.results.recorder import depths
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.rod_seal import imbalance, run_and_watch, shipped_scene
 

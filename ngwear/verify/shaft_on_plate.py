@@ -35,7 +35,7 @@ import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
-from ngwear.geometry.contour import Array, Contour
+from ngwear.geometry.outline import Array, Contour
 from ngwear.loop.stepper import Stepper
 from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch

@@ -18,7 +18,7 @@ from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed

@@ -17,7 +17,7 @@ import warnings
 import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear

@@ -5,10 +5,10 @@ slides to and fro (friction 0.2, 0.9 s a stroke); every second stroke 0.3 MPa pr
 10 s, 1.8 times as stiff together as the long-term rubber, G = 1.5 MPa. The block has relaxed under the cylinder
 before the first stroke.
 
-Resolved: each reversal at once, then 24 growing steps. Compared are the means over each of the first six strokes of
-the cylinder's force and of the highest contact pressure. With a pressed side strains do not stand still during a
-stroke: that is the error. What a run of the same scene states of it (``ngwear.loop.time_step``) is held against the strokes
-resolved in time, and its error with strokes in four parts against that with strokes in one.
+Resolved: each reversal at once, then 24 growing steps. Compared are the means over each of the first six strokes of the
+cylinder's force and of the highest contact pressure. With a pressed side strains do not stand still during a stroke:
+that is the error. What a run of the same scene states of it (``ngwear.loop.time_step_error``) is held against the
+strokes resolved in time, and its error with strokes in four parts against that with strokes in one.
 
 Jumps of 1, 3, 9 and 27 cycles, growing as wear's do, against the 40 one by one: force and pressure of the last
 strokes. A jump takes the other strokes' strains as they were solved last; while the arms still settle, that is its
@@ -32,15 +32,15 @@ from ngwear.effects.stroke_memory import StrokeMemory
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
-from ngwear.fields.background import Background
+from ngwear.fields.background_mesh import Background
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
-from ngwear.loop.cycle_memory import CycleMemory
+from ngwear.geometry.outline import Contour
+from ngwear.loop.memory_over_cycles import CycleMemory
 from ngwear.loop.run import run as run_scene
-from ngwear.loop.time_step import ahead
+from ngwear.loop.time_step_error import ahead
 from ngwear.materials import MooneyRivlin, PronySeries
-from ngwear.results import readings
+from ngwear.results import quantities_of_interest
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import ContactSpec, FluidSpec, Scene, SupportSpec, Wear
@@ -180,7 +180,7 @@ def time_step() -> list[Check]:
         forces = [abs(report.forces["roller"][1]) for report in ahead(result.state).reports]
         force = np.mean(np.reshape(forces, (2, parts)), axis=1)
         off[parts] = float(np.linalg.norm(force - exact) / np.linalg.norm(exact))
-        said = result.summary["error estimates"][f"{readings.FRICTION[:-4]} {readings.BY_TIME_STEP}"]
+        said = result.summary["error estimates"][f"{quantities_of_interest.FRICTION[:-4]} {quantities_of_interest.BY_TIME_STEP}"]
         words = (
             f"{parts} part{'' if parts == 1 else 's'} a stroke: stated over true error of the force by its time step"
         )

@@ -31,7 +31,7 @@ from ngwear.effects.unilateral import UnilateralContact
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Solid
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.sheet import Sheet
 from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries

@@ -30,9 +30,9 @@ from ngwear.errors import NgwearError
 from ngwear.loop.run import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.sweep import Outcome, sweep
-from ngwear.results.readings import reading
-from ngwear.results.results import BOOK
-from ngwear.results.seen_order import relative_errors
+from ngwear.results.quantities_of_interest import reading
+from ngwear.results.recorder import BOOK
+from ngwear.results.richardson import relative_errors
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wearing import CALM
+from ngwear.loop.wear_step import CALM
 from ngwear.materials import Hyperelastic
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Accuracy, ContactSpec, Save, Scene, SupportSpec, Wear
 from ngwear.surfaces import Cylinder
-from ngwear.wear.backward import share_of_last
+from ngwear.wear.backward_differences import share_of_last
 
 if TYPE_CHECKING:
     from ngwear.loop.state import State

@@ -15,7 +15,7 @@ from ngwear.effects.pressure_wear import PressureWear
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.laws import PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke

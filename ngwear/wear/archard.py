@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 
 Array = NDArray[np.float64]
 

@@ -15,11 +15,11 @@ from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.recession import recede
 from ngwear.surfaces import WornProfile
 from ngwear.wear.archard import worn_share
-from ngwear.wear.control import JumpControl
+from ngwear.wear.jump_control import JumpControl
 
 Array = NDArray[np.float64]
 

@@ -58,9 +58,9 @@ def fine_along_the_edges(edge):
 
 def subject(kind, setting, jump, name):
     """One run, as JSON on the last line."""
-    from ngwear.error_estimates.adaptive import at_level
+    from ngwear.error_estimates.run_to_error import at_level
     from ngwear.loop.run import run
-    from ngwear.scene.scenefile import read_scene
+    from ngwear.scene.read_scene import read_scene
 
     scene = read_scene(GEOMETRIES / name / "scene.toml")
     scene = replace(scene, save=replace(scene.save, strokes=()))

@@ -10,7 +10,7 @@ import sys
 import numpy as np
 
 from ngwear.verify.fretting import DEPTHS, LOAD, MOTION, PAIR_MODULUS, RADIUS
-from ngwear.wear.control import JumpControl
+from ngwear.wear.jump_control import JumpControl
 
 CELL, REACH = 0.002, 0.25
 PLACES, WEAR_ERROR = 6, 0.01

@@ -19,7 +19,7 @@ from ngwear.equilibrium.newton import solve
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.sizing import SizeField
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder

@@ -28,7 +28,7 @@ def subject(across, name):
     begun = time.perf_counter()
     from ngwear.loop.run import run
     from ngwear.scene.accuracy import Accuracy
-    from ngwear.scene.scenefile import read_scene
+    from ngwear.scene.read_scene import read_scene
 
     scene = read_scene(GEOMETRIES / f"{name}.toml")
     scene = replace(scene, accuracy=Accuracy(across=across))

@@ -50,7 +50,7 @@ MODULES = {
 
 def pair(effect):
     """The scene with the effect, and without."""
-    from ngwear.geometry.contour import Contour
+    from ngwear.geometry.outline import Contour
     from ngwear.laws import PowerWear
     from ngwear.materials import MooneyRivlin, PronySeries
     from ngwear.scene.deactivation import Deactivation

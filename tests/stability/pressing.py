@@ -14,7 +14,7 @@ from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
 from ngwear.verify.builders import meshed

@@ -16,7 +16,7 @@ from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.mounting import mount
 from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage

@@ -14,13 +14,13 @@ import pytest
 
 from ngwear.equilibrium.linear import has_pardiso
 from ngwear.errors import GeometryError, ResultError
-from ngwear.files.files import CHECKPOINT, FIELDS, SERIES
-from ngwear.geometry.contour import Contour
+from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.recession import recede
 from ngwear.loop.run import run
 from ngwear.plots.wear import plot
-from ngwear.results.results import Folder
-from ngwear.scene.scenefile import read_scene
+from ngwear.results.recorder import Folder
+from ngwear.scene.read_scene import read_scene
 
 CLI = "import sys; from ngwear.cli import main; sys.exit(main(sys.argv[1:]))"
 

@@ -7,7 +7,7 @@ import numpy as np
 from case import Case
 from physics import ROUGHNESS, Finding, body, book, near, pressure
 
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke

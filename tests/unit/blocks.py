@@ -8,8 +8,8 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.geometry.body import _outline
-from ngwear.geometry.contour import Contour
 from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.outline import Contour
 
 SIDES = ("bottom", "right", "top", "left")
 

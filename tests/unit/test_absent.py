@@ -9,7 +9,7 @@ from scipy.special import k0
 
 from ngwear.errors import SceneError
 from ngwear.explanation import adhesion, film, heat, inertia, relaxation
-from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.assumptions import Assumed
 from ngwear.explanation.verdict import onset
 from ngwear.materials import WLF
 

@@ -3,14 +3,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear.error_estimates.companion import scaled
+from ngwear.error_estimates.coarser_runs import scaled
 from ngwear.errors import SceneError
-from ngwear.loop.choosing import chosen, laid_out
+from ngwear.loop.element_sizes import chosen, laid_out
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.scene.accuracy import ALIKE, PRESETS, Accuracy
+from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Wear
-from ngwear.scene.scenefile import read_scene
 from ngwear.verify.no_loss import scene
 
 GIVEN = replace(scene("implicit"), deactivation=None, wear=Wear())

@@ -4,12 +4,12 @@ from dataclasses import replace
 import pytest
 
 from ngwear.cli import main
-from ngwear.error_estimates import adaptive
-from ngwear.error_estimates.adaptive import ACROSS, LEVELS, at_level, first_across, next_across, run_to_error
-from ngwear.error_estimates.companion import COARSEST, FILE
+from ngwear.error_estimates import run_to_error as adaptive
+from ngwear.error_estimates.coarser_runs import COARSEST, FILE
+from ngwear.error_estimates.run_to_error import ACROSS, LEVELS, at_level, first_across, next_across, run_to_error
 from ngwear.errors import ResultError, SceneError
 from ngwear.loop.stepper import Stepper
-from ngwear.results.readings import DEPTH
+from ngwear.results.quantities_of_interest import DEPTH
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.scene import Wear
 from ngwear.verify.no_loss import scene

@@ -8,10 +8,10 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
 from ngwear.errors import SceneError
-from ngwear.fields.background import Background, Seat
+from ngwear.fields.background_mesh import Background, Seat
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.fields.locator import Locator
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import NeoHooke, PronySeries
 from ngwear.verify.builders import meshed
 

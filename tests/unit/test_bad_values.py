@@ -8,7 +8,7 @@ import pytest
 from conftest import REMEMBERS, SHEET_OUTLINE, SHEET_SCENE, edited
 
 from ngwear.errors import NgwearError, SceneError
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 NONSENSE = [
     True,

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
-from ngwear.files.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.loop.stepper import Stepper
 from ngwear.verify import CASES, Check
 

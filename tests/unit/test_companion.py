@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear.error_estimates import companion
-from ngwear.error_estimates.companion import (
+from ngwear.error_estimates import coarser_runs as companion
+from ngwear.error_estimates.coarser_runs import (
     COARSER,
     COARSEST,
     FILE,
@@ -21,10 +21,10 @@ from ngwear.loop.run import run
 from ngwear.materials import PronySeries
 from ngwear.parallel.workers import Worker
 from ngwear.plots import wear
-from ngwear.results.readings import DEPTH, LOST, PEAK, PLACES, element_edge, reading
+from ngwear.results.quantities_of_interest import DEPTH, LOST, PEAK, PLACES, element_edge, reading
+from ngwear.results.recorder import TORN, fingerprint
 from ngwear.results.result_file import read_result
-from ngwear.results.results import TORN, fingerprint
-from ngwear.results.seen_order import relative_errors
+from ngwear.results.richardson import relative_errors
 from ngwear.scene.scene import Wear
 from ngwear.verify.no_loss import scene
 
@@ -262,7 +262,7 @@ def test_figures_are_drawn_half_by_the_worker_or_else_all_here(finished, tmp_pat
     drawn, folder = [], finished[0]
     plot = wear.plot
     monkeypatch.setattr(wear, "plot", lambda *a, **how: drawn.append(plot(*a, **how)))  # a worker has its own
-    worker = Worker("ngwear.error_estimates.companion")
+    worker = Worker("ngwear.error_estimates.coarser_runs")
     if not there:
         worker.end()
     for name in (FILE, COARSEST):

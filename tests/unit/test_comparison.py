@@ -7,7 +7,7 @@ import pytest
 
 from ngwear.cli import BAD_INPUT, OK, main
 from ngwear.plots.compare import compare
-from ngwear.results.results import FIELDS
+from ngwear.results.recorder import FIELDS
 
 
 def test_two_runs_of_one_outline_are_drawn(finished, tmp_path, capsys):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 

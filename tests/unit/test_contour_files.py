@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.contour_files import read_contour
+from ngwear.geometry.outline_files import read_contour
 
 CSV = "x [mm],y [mm],edge\n0,0,bottom\n4,0,right\n4,2,top\n0,2,left\n"
 RADIUS = 0.5

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
+from ngwear.geometry.outline import Contour, polygon_area, polygon_moment
 
 
 def test_moment_of_a_rectangle_and_of_a_notched_one_by_hand():

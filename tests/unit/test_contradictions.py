@@ -3,7 +3,7 @@
 import pytest
 
 from ngwear.errors import SceneError
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 FRICTIONLESS, WEARLESS = ("friction = 0.1\n", ""), ("specific_wear_rate = 1.0e-3\n", "")
 

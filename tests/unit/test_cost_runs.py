@@ -14,16 +14,16 @@ import pytest
 from conftest import REMEMBERS
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
-from ngwear.error_estimates import knobs as knobs_of
+from ngwear.error_estimates import settings as knobs_of
 from ngwear.error_estimates.cost import CSV, JSON, PNG, RUNS, cost
 from ngwear.error_estimates.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
-from ngwear.error_estimates.knobs import at, knobs
 from ngwear.error_estimates.ladder import STOPPED
+from ngwear.error_estimates.settings import at, knobs
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.loop import stepper
 from ngwear.parallel.sweep import sweep
 from ngwear.parallel.workers import one_thread_pool
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 from ngwear.verify.rod_seal import shipped_scene
 
 JUMPS = (("strokes = 4", "strokes = 12"), ('step = "each"', 'step = "jump"'))

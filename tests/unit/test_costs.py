@@ -5,14 +5,14 @@ from dataclasses import replace
 
 import pytest
 
-from ngwear.error_estimates.climb import climb, confirm
-from ngwear.error_estimates.front import cheapest, pareto_front, power_law, product_seconds
+from ngwear.error_estimates.convergence_order import observed_order, reference_error, relative
+from ngwear.error_estimates.cost_table import as_dict, table
+from ngwear.error_estimates.cost_text import paragraph
 from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement
-from ngwear.error_estimates.order import observed_order, reference_error, relative
-from ngwear.error_estimates.report import as_dict, table
-from ngwear.error_estimates.words import paragraph
+from ngwear.error_estimates.pareto_front import cheapest, pareto_front, power_law, product_seconds
+from ngwear.error_estimates.settings_search import climb, confirm
 from ngwear.errors import SceneError
-from ngwear.files.files import COMPLETED, GAVE_UP
+from ngwear.files.result_folder import COMPLETED, GAVE_UP
 
 DEPTH = "maximum depth [mm]"
 LIMIT, MESH_ERROR, JUMP_ERROR = 1.0, 2.0, 0.1

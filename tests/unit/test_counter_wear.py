@@ -8,16 +8,16 @@ import pytest
 
 from ngwear.errors import SceneError
 from ngwear.explanation.explain import explain
-from ngwear.loop.counter_wear import ways
+from ngwear.loop.counter_surface import ways
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.wear import plot
 from ngwear.results.result_file import read_result
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 from ngwear.surfaces import Cylinder, Plane, WornProfile
-from ngwear.wear.strokes import Strokes
+from ngwear.wear.sliding_distance import Strokes
 
 K, COUNTER_K = 1e-3, 5e-4
 WEARS = ("specific_wear_rate = 1.0e-3", "specific_wear_rate = 1.0e-3\ncounter_wear_rate = 5.0e-4")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ngwear.wear.cycles import ArmMap, before_last, whole
+from ngwear.wear.cycle_jumps import ArmMap, before_last, whole
 
 TIMES = np.array([1e-4, 0.03, 1.0, 40.0, 1e9])
 DURATIONS = (0.9, 0.2, 3.0)

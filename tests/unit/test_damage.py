@@ -15,7 +15,7 @@ from ngwear.laws.damage import (
     Stresses,
     TensileNormalStress,
 )
-from ngwear.loop import deactivation
+from ngwear.loop import lost_elements
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.deactivation import DistortionFilter
@@ -95,7 +95,7 @@ def test_stresses_of_a_homogeneous_deformation_are_cauchys():
     j = np.linalg.det(f)
     stage.body.set_nodal(stage.problem.fields[DISPLACEMENT], stage.body.node_places() @ (f - np.eye(2)).T)
     stage.problem.fields[VOLUMETRIC_STRESS].vec[:] = stage.elasticity.split[1] * (j - 1)
-    found = deactivation.stresses(stage)
+    found = lost_elements.stresses(stage)
     b, i1 = f @ f.T, np.sum(f * f) + 1
     by_hand = 1.5 * j ** (-5 / 3) * (b - i1 / 3 * np.eye(2)) + 20.0 * (j - 1) * np.eye(2)
     expected = [by_hand[0, 0], by_hand[1, 1], by_hand[0, 1]]
@@ -103,7 +103,7 @@ def test_stresses_of_a_homogeneous_deformation_are_cauchys():
     energy = 0.75 * (j ** (-2 / 3) * i1 - 3) + 10.0 * (j - 1) ** 2
     np.testing.assert_allclose(found.energy, energy, rtol=1e-10)
     highest = np.linalg.eigvalsh(by_hand)[-1]
-    np.testing.assert_allclose(deactivation.exhaustion(state, 1), highest, rtol=1e-10)
+    np.testing.assert_allclose(lost_elements.exhaustion(state, 1), highest, rtol=1e-10)
 
 
 def merged():
@@ -123,11 +123,11 @@ def test_what_tires_an_element_is_its_own_stress():
     assert not (np.sort(body.numbers) == body.numbers).all(), "otherwise nothing is tested"
     pull(state, "top", 0.1)
     state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
-    deactivation.tire(state, 1, last=False)
-    stress = deactivation.loaded(state.stage)["stress xx, yy, xy [MPa]"]
+    lost_elements.tire(state, 1, last=False)
+    stress = lost_elements.loaded(state.stage)["stress xx, yy, xy [MPa]"]
     np.testing.assert_allclose(state.strained, damage.exhaustion(Stresses(stress, np.zeros(len(stress)))), rtol=1e-12)
     assert not state.fatigue.any()
-    deactivation.tire(state, 3, last=True)
+    lost_elements.tire(state, 3, last=True)
     np.testing.assert_allclose(
         state.fatigue, 3 * damage.exhaustion(Stresses(stress, np.zeros(len(stress)))), rtol=1e-12
     )
@@ -140,8 +140,8 @@ def test_triangles_that_wear_has_left_of_the_layers_are_torn_others_are_not():
     for made, torn in ((cells, np.ones(24, dtype=bool)), (others, cells.quads)):
         state = block(MaximumPrincipalStress(critical=1e-3), made)
         pull(state, "top", 0.1)
-        used = deactivation.exhaustion(state, 1)
-        stress = deactivation.loaded(state.stage)["stress xx, yy, xy [MPa]"]
+        used = lost_elements.exhaustion(state, 1)
+        stress = lost_elements.loaded(state.stage)["stress xx, yy, xy [MPa]"]
         principal = Stresses(stress, np.zeros(len(stress))).principal
         np.testing.assert_allclose(used, np.where(torn, 1e3 * principal, 0.0), rtol=1e-12)
 
@@ -150,19 +150,19 @@ def test_the_highest_stress_of_a_cycle_counts_as_often_as_it_is_repeated():
     state = block(Fatigue(critical=5.0, exponent=2.0))
     pull(state, "top", 0.1)
     state.fatigue, state.strained = np.full(24, 0.25), np.zeros(24)
-    present = deactivation.exhaustion(state, 1) - 0.25
+    present = lost_elements.exhaustion(state, 1) - 0.25
     assert (present > 0).all()
-    np.testing.assert_allclose(deactivation.exhaustion(state, 3), 0.25 + 3 * present, rtol=1e-12)
+    np.testing.assert_allclose(lost_elements.exhaustion(state, 3), 0.25 + 3 * present, rtol=1e-12)
     state.strained = np.where(np.arange(24) < 12, 2.0, 0.5) * present
     expected = 0.25 + 3 * np.where(np.arange(24) < 12, 2.0, 1.0) * present
-    np.testing.assert_allclose(deactivation.exhaustion(state, 3), expected, rtol=1e-12)
+    np.testing.assert_allclose(lost_elements.exhaustion(state, 3), expected, rtol=1e-12)
 
 
 def test_nothing_is_torn_below_the_criterion_and_the_state_is_left_alone():
     state = block(MaximumPrincipalStress(critical=1e3))
     pull(state, "top", 0.1)
     stage, vector = state.stage, state.phases[0].vector.copy()
-    assert not deactivation.tear(state, state.contour, 1)
+    assert not lost_elements.tear(state, state.contour, 1)
     assert state.stage is stage
     np.testing.assert_array_equal(state.phases[0].vector, vector)
     assert state.ledger.lost[Fate.TORN] == 0.0
@@ -180,7 +180,7 @@ def test_what_is_left_keeps_its_state():
 
     before = displaced()
     dead = np.arange(24) == 12  # at the left side, in the third row
-    deactivation.lose(state, state.stage.body.now, dead, Fate.TORN)
+    lost_elements.lose(state, state.stage.body.now, dead, Fate.TORN)
     after = displaced()
     assert len(after) == len(before)
     assert all(after[point] == before[point] for point in after)

@@ -8,17 +8,17 @@ from conftest import REMEMBERS
 from ngwear.errors import GeometryError, MeshError, SceneError
 from ngwear.explanation.explain import explain
 from ngwear.geometry.cells import Fate
-from ngwear.geometry.contour import polygon_area
+from ngwear.geometry.outline import polygon_area
 from ngwear.laws.damage import Fatigue, MaximumPrincipalStress, Stresses, TensileNormalStress
-from ngwear.loop import deactivation
+from ngwear.loop import lost_elements
 from ngwear.loop.run import GAVE_UP, run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wearing import Wearing
+from ngwear.loop.wear_step import Wearing
 from ngwear.materials import NeoHooke
 from ngwear.scene.deactivation import Deactivation, DistortionFilter
 from ngwear.scene.program import Program
+from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import SupportSpec
-from ngwear.scene.scenefile import read_scene
 from ngwear.verify.cell_blocks import grid, held
 from ngwear.verify.material_book import torn_scene
 from ngwear.verify.no_loss import scene
@@ -142,13 +142,13 @@ def test_a_part_torn_off_its_support_is_reported():
     damage = MaximumPrincipalStress(critical=1.0)
     state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), damage)
     with pytest.raises(GeometryError, match=r"held or loaded by nothing: nothing of the edges \['bottom'\] is left"):
-        deactivation.lose(state, BLOCK, np.arange(24) < 6, Fate.TORN)
+        lost_elements.lose(state, BLOCK, np.arange(24) < 6, Fate.TORN)
 
 
 def test_a_support_of_which_something_is_left_holds_only_there():
     damage = MaximumPrincipalStress(critical=1.0)
     state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), damage)
-    deactivation.lose(state, BLOCK, np.arange(24) < 4, Fate.TORN)
+    lost_elements.lose(state, BLOCK, np.arange(24) < 4, Fate.TORN)
     contour = state.contour
     on = contour.on(("bottom",))
     assert contour.lengths[on].sum() == pytest.approx(1.0)
@@ -165,7 +165,7 @@ def test_a_support_of_which_something_is_left_holds_only_there():
 )
 def test_a_run_that_loses_too_much_gives_up_with_the_state_before(monkeypatch, tears, told):
     """In the second stroke of its second cycle; its first one has torn something, too."""
-    real = deactivation.exhaustion
+    real = lost_elements.exhaustion
 
     def exhaustion(state, repeats):
         cells = state.stage.body.cells
@@ -178,7 +178,7 @@ def test_a_run_that_loses_too_much_gives_up_with_the_state_before(monkeypatch, t
         return np.where(cells.living & torn, 2.0, 0.0)
 
     seen = []
-    monkeypatch.setattr(deactivation, "exhaustion", exhaustion)
+    monkeypatch.setattr(lost_elements, "exhaustion", exhaustion)
     result = run(scene("implicit", damage=MaximumPrincipalStress(critical=9.0)), throw=False, figures=False)
     assert result.status == GAVE_UP
     assert seen == [2, 2, 3], "torn, solved again, then too much"
@@ -197,7 +197,7 @@ def test_what_a_wall_gains_or_loses_as_its_ends_are_merged_is_in_the_book(sinks)
     state = held(pit, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), NOTHING)
     outline, points = state.contour, state.contour.points.copy()
     points[(points[:, 1] == 2.0) & np.isin(points[:, 0], (1.0, 1.5)), 1] -= sinks
-    deactivation.follow(state, outline, points)
+    lost_elements.follow(state, outline, points)
     lost = sum(state.ledger.lost.values())
     merged = len(state.contour) < len(outline)
     assert merged == (sinks > 0.4)
@@ -214,7 +214,7 @@ def test_wear_that_reaches_a_hole_opens_it(places):
     state = held(holed, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), NOTHING)
     outline, points = state.contour, state.contour.points.copy()
     points[(points[:, 1] == 2.0) & np.isin(points[:, 0], places), 1] -= 0.45
-    deactivation.follow(state, outline, points)
+    lost_elements.follow(state, outline, points)
     lost = sum(state.ledger.lost.values())
     assert len(state.cells.holes()) == 0
     assert holed.area - state.cells.area == pytest.approx(outline.area - polygon_area(points) + lost, rel=1e-12)
@@ -292,7 +292,7 @@ def test_what_friction_tears_lies_near_the_contact():
     used = []
     for one in (near, everywhere):
         state = Stepper(one).start()
-        used.append(deactivation.exhaustion(state, 1))
+        used.append(lost_elements.exhaustion(state, 1))
     profile = state.stage.contacts["cylinder"].profile()
     places, centres = profile.reference[profile.nominal_pressure > 0], state.cells.centres()
     distance = np.linalg.norm(centres[:, None] - places, axis=2).min(axis=1)

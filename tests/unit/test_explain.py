@@ -10,12 +10,12 @@ from conftest import REMEMBERS
 
 from ngwear.cli import BAD_INPUT, OK, main
 from ngwear.explanation import heat
-from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.assumptions import Assumed
+from ngwear.explanation.contact_pressures import press
 from ngwear.explanation.explain import explain
-from ngwear.explanation.pin_left_out import left_out as left_out_of_pin
-from ngwear.explanation.pressing import press
+from ngwear.explanation.neglected_effects_pin import left_out as left_out_of_pin
 from ngwear.explanation.text import lines
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 GEOMETRIES = Path(__file__).parents[2] / "geometries"
 ONSET = "speed from which the flash temperature exceeds 10 K [mm/s]"

@@ -10,13 +10,13 @@ from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import advance
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import NeoHooke
 from ngwear.plots.fretting import draw_scars
 from ngwear.surfaces import Cylinder, Plane, Sphere, WornProfile
 from ngwear.verify.builders import meshed
-from ngwear.wear.control import JumpControl
 from ngwear.wear.fretting import Fretting, Motion
+from ngwear.wear.jump_control import JumpControl
 
 RUBBER = NeoHooke(shear=1.0, bulk_modulus=1e3)
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ngwear.loop.lasting_slip import lasting
+from ngwear.loop.slip_over_cycles import lasting
 from ngwear.loop.state import Phase
 from ngwear.scene.program import Stroke
 

@@ -11,7 +11,7 @@ from ngwear.loop.run import run
 from ngwear.profiles.comparison import compare_profile
 from ngwear.profiles.law_fit import fit_wear_law
 from ngwear.profiles.worn_edge import read_worn_edge
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 RATE, SLID = 1e-4, 200.0
 TRUE = {

@@ -10,20 +10,20 @@ import numpy as np
 import pytest
 
 from ngwear.cli import main
-from ngwear.equilibrium.steady import SteadyOptions
+from ngwear.equilibrium.steady_sliding import SteadyOptions
 from ngwear.errors import SceneError
 from ngwear.explanation.explain import explain
 from ngwear.laws import ByPressure, Lubrication, Product, Stribeck, WearRate
-from ngwear.loop.drift import friction_range, steady_cycles
+from ngwear.loop.law_changes import friction_range, steady_cycles
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import MooneyRivlin, PronySeries
 from ngwear.results.result_file import read_result
 from ngwear.scene.pin_scene import Pin, PinMesh
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 from ngwear.sliding.pin import PinStage
-from ngwear.wear.strokes import Strokes
+from ngwear.wear.sliding_distance import Strokes
 
 MU, K = "roller friction coefficient [-]", "roller specific wear rate [mm^2/N]"
 PHASES = 'friction = { law = "lubrication", distance = [0, 100, 200, 300], coefficient = [0.06, 0.06, 0.2, 0.6] }'

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.contour import Contour
-from ngwear.geometry.contour_files import read_contour
 from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.layers import layered
+from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline_files import read_contour
 
 OPTIONS = {"depth": 0.3, "edge": 0.1, "coarse": 0.5, "grading": 0.3}
 

@@ -10,22 +10,22 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import advance
-from ngwear.error_estimates.adaptive import at_level
-from ngwear.error_estimates.companion import stated
+from ngwear.error_estimates.coarser_runs import stated
 from ngwear.error_estimates.cost import cost
 from ngwear.error_estimates.cost_runs import wear_values
+from ngwear.error_estimates.run_to_error import at_level
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.plots.wear import history_figure
-from ngwear.results.readings import LEAKS, reading
+from ngwear.results.quantities_of_interest import LEAKS, reading
+from ngwear.results.recorder import LEAK, Recorder
 from ngwear.results.result_file import read_result
-from ngwear.results.results import LEAK, Recorder
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import FluidSpec
-from ngwear.scene.tables import record
+from ngwear.scene.toml_values import record
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
 from ngwear.verify.leak_pressure import PRESSURES, RUBBER, scene

@@ -6,7 +6,7 @@ from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import MooneyRivlin
 from ngwear.verify.builders import meshed, quarter_ring
 

@@ -11,14 +11,14 @@ from conftest import ARMS, REMEMBERS, edited
 from ngwear.cli import OK, main
 from ngwear.equilibrium.linear import has_pardiso
 from ngwear.errors import ConvergenceError, SceneError
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wearing import Wearing
+from ngwear.loop.wear_step import Wearing
 from ngwear.materials import WLF, NeoHooke, PronySeries, Stiffened
 from ngwear.materials.library import filled_rubber
+from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import SupportSpec
-from ngwear.scene.scenefile import read_scene
 from ngwear.surfaces import Plane
 
 SHIFT = 'shift = { law = "wlf", c1 = 17.44, c2 = 51.6, reference = 296.15 }'

@@ -8,17 +8,17 @@ from conftest import REMEMBERS
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.elasticity import Elasticity
-from ngwear.equilibrium.carry import carry
 from ngwear.equilibrium.problem import Problem
+from ngwear.equilibrium.state_transfer import carry
 from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.fields.displacements import displacements
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.mounting import unworn_body
 from ngwear.loop.run import run
 from ngwear.loop.stage import Stage
 from ngwear.materials import NeoHooke
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 from ngwear.verify.builders import meshed
 
 RUBBER = NeoHooke(shear=1.0, bulk_modulus=100.0)

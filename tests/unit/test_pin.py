@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ngwear.equilibrium.steady import SteadyOptions
+from ngwear.equilibrium.steady_sliding import SteadyOptions
 from ngwear.errors import SceneError
 from ngwear.geometry.sheet import Sheet
 from ngwear.materials import MooneyRivlin, PronySeries

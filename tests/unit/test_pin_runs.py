@@ -12,7 +12,7 @@ import pytest
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.errors import SceneError
 from ngwear.materials import PronySeries
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 from ngwear.sliding.pin import COARSER, slide_pin
 
 SCENE = """

@@ -16,7 +16,7 @@ from ngwear.errors import MeshError
 from ngwear.fields.element_shapes import Cells
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry import nodal
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder
 from ngwear.verify import convergence, locking

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.recession import recede, refuse_worn_through, tidied
 from ngwear.geometry.sizing import SizeField
 

@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 
 from ngwear.errors import ResultError
-from ngwear.files.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.plots.schemes import draw_schemes
 from ngwear.plots.wear import is_mirrored, plot, worn_edge
+from ngwear.results.recorder import Folder, Recorder, depths, fingerprint
 from ngwear.results.result_file import read_result
-from ngwear.results.results import Folder, Recorder, depths, fingerprint
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 CHANGES = [
     ("shear = 1.0", "shear = 1.0000001"),

@@ -18,14 +18,14 @@ import pytest
 from ngwear.cli import main
 from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError, SceneError
-from ngwear.files.files import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.loop import stepper
 from ngwear.loop.run import COMPLETED, GAVE_UP, run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wearing import Wearing
-from ngwear.results.results import Folder
+from ngwear.loop.wear_step import Wearing
+from ngwear.results.recorder import Folder
+from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Save
-from ngwear.scene.scenefile import read_scene
 
 FILES = {SERIES, FIELDS, SUMMARY, CHECKPOINT}
 CONTRACT = {

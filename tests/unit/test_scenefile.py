@@ -5,7 +5,7 @@ from conftest import edited
 
 from ngwear.errors import GeometryError, SceneError
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 ROLLER = 'surface = { type = "cylinder", centre = [2.0, 3.99], radius = 2.0, push = [0.0, -1.0] }'
 EDGES = 'edges = ["top"]'

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ngwear.results.seen_order import HIGHEST, LOWEST, error_of_finest, order_seen, relative_errors
+from ngwear.results.richardson import HIGHEST, LOWEST, error_of_finest, order_seen, relative_errors
 
 PLACES = np.linspace(1.0, 2.0, 5)
 LENGTH = np.sqrt(np.mean(PLACES**2))

@@ -6,7 +6,7 @@ import pytest
 from ngwear.errors import MeshError
 from ngwear.geometry import section
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 

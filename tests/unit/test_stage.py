@@ -7,14 +7,14 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.problem import Problem, Support
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
+from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec
-from ngwear.scene.scenefile import read_scene
 from ngwear.surfaces import Plane
 
 

@@ -13,7 +13,7 @@ from ngwear.equilibrium.problem import Problem, Support
 from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain, Solid
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.sheet import Sheet
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Plane, Sphere

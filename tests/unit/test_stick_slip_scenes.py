@@ -9,7 +9,7 @@ from ngwear.errors import SceneError
 from ngwear.explanation.explain import explain
 from ngwear.loop.run import COMPLETED, run
 from ngwear.loop.stepper import Stepper
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 
 MU, FORCE, RATE = 0.3, 0.5, 1e-3
 ONCE = 'name = "stroke"\ntravel = 10.0\n'

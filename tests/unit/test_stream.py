@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from ngwear.fields.stream import StreamGrid
+from ngwear.fields.streamlines import StreamGrid
 
 COLUMNS = np.linspace(-6.0, 5.0, 23)
 OFFSETS, HEIGHTS = np.linspace(-2.0, 3.0, 6), np.array([0.0, 0.5, 2.0])

@@ -11,21 +11,21 @@ import pytest
 from conftest import REMEMBERS, _write_sheet
 
 from ngwear import adaptive, time_step
-from ngwear.error_estimates.adaptive import ACROSS, PARTS, next_level, next_parts, run_to_error
-from ngwear.error_estimates.companion import stated
-from ngwear.error_estimates.knobs import at, changes, knobs
+from ngwear.error_estimates.coarser_runs import stated
+from ngwear.error_estimates.run_to_error import ACROSS, PARTS, next_level, next_parts, run_to_error
+from ngwear.error_estimates.settings import at, changes, knobs
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.explanation.explain import explain
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.time_step import ahead, in_halves, time_step_errors
-from ngwear.results.readings import AREA, BY_TIME_STEP, DEPTH, FRICTION, PEAK, reading
+from ngwear.loop.time_step_error import ahead, in_halves, time_step_errors
+from ngwear.results.quantities_of_interest import AREA, BY_TIME_STEP, DEPTH, FRICTION, PEAK, reading
 from ngwear.results.result_file import read_result
-from ngwear.results.seen_order import relative_errors
+from ngwear.results.richardson import relative_errors
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.program import Program, Stroke, whole_name
+from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Save
-from ngwear.scene.scenefile import read_scene
 
 FORTH = Stroke(name="forth", travel=18.0, speed=20.0)
 BACK = Stroke(name="back", travel=6.0, direction=-1.0, speed=20.0, pressure=0.5)

@@ -11,7 +11,7 @@ from ngwear.cli import BAD_INPUT, OK, main
 from ngwear.errors import ResultError
 from ngwear.geometry.cells import Fate
 from ngwear.plots.animation import FILE, FRAMES, animate, frames, worn_window
-from ngwear.plots.book import AREAS, CAUSES, IN_ALL, book_figure
+from ngwear.plots.area_balance import AREAS, CAUSES, IN_ALL, book_figure
 from ngwear.plots.sections import living, lost, overlapping, sections, when, worn_face
 from ngwear.plots.stress import critical_stress, directions, stress_figure, tensile
 from ngwear.plots.torn import LOST, face_figure, ridge_figure, ridge_window

@@ -6,7 +6,7 @@ import pytest
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.loop.state import FALLS, Ledger
 from ngwear.wear.archard import critical_distance, worn_share
-from ngwear.wear.control import GROWTH, SAFETY, JumpControl
+from ngwear.wear.jump_control import GROWTH, SAFETY, JumpControl
 
 
 def profile(t, depth, lengths):

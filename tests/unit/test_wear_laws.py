@@ -26,7 +26,7 @@ from ngwear.laws import (
     WearLaw,
 )
 from ngwear.loop.stepper import Stepper
-from ngwear.scene.scenefile import read_scene
+from ngwear.scene.read_scene import read_scene
 from ngwear.verify.builders import meshed
 from ngwear.verify.worn_column import CONTOUR, PATCH, RUBBER, SURFACE
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from ngwear.errors import MeshError
-from ngwear.geometry.contour import Contour
-from ngwear.loop.remesh import _Moved
+from ngwear.geometry.outline import Contour
+from ngwear.loop.remeshing import _Moved
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wearing import Wearing
-from ngwear.wear.backward import error_over_difference, share_of_last
+from ngwear.loop.wear_step import Wearing
+from ngwear.wear.backward_differences import error_over_difference, share_of_last
 
 
 def worn(ways):
-    """dw/ds = 1 - w from w = 0, by the steps of ``wear.backward``."""
+    """dw/ds = 1 - w from w = 0, by the steps of ``wear.backward_differences``."""
     depth, mean, before = 0.0, 0.0, 0.0
     for way in ways:
         last = share_of_last(way, before)

@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from ngwear.error_estimates.front import cheapest
+from ngwear.error_estimates.cost_study import TARGETS, Study
 from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement, Setting, rung_of
-from ngwear.error_estimates.study import TARGETS, Study
+from ngwear.error_estimates.pareto_front import cheapest
 from ngwear.errors import SceneError
 
 CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended

@@ -10,7 +10,7 @@ from typing import Any
 from ngwear.error_estimates.ladder import Ladder, Setting
 from ngwear.materials import Folding
 from ngwear.scene.accuracy import ORDERS
-from ngwear.scene.contradictions import why_not_order
+from ngwear.scene.checks import why_not_order
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
 

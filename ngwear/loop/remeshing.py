@@ -7,12 +7,12 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.carry import carry
+from ngwear.equilibrium.state_transfer import carry
 from ngwear.errors import MeshError
 from ngwear.geometry.body import Body
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.recession import tidied
-from ngwear.loop.choosing import chosen
+from ngwear.loop.element_sizes import chosen
 from ngwear.loop.refinement import outgrown, unworn_outline, wanted_size
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from ngwear.error_estimates.front import pareto_front, power_law, product_seconds
+from ngwear.error_estimates.convergence_order import observed_order, reference_error, relative
 from ngwear.error_estimates.ladder import Ladder, Measurement, Setting, rung_of
-from ngwear.error_estimates.order import observed_order, reference_error, relative
+from ngwear.error_estimates.pareto_front import pareto_front, power_law, product_seconds
 
 TARGETS = (0.05, 0.01, 0.001)
 SETTLED = 0.1 * min(TARGETS)  # error of the finest rung below which a finer one has nothing to tell

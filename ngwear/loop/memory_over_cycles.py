@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ngwear.effects.memory import step_factors
 from ngwear.effects.stroke_memory import StrokeMemory
-from ngwear.fields.background import Background
+from ngwear.fields.background_mesh import Background
 from ngwear.materials import PronySeries
-from ngwear.wear.cycles import Plan, before_last, whole
+from ngwear.wear.cycle_jumps import Plan, before_last, whole
 
 Array = NDArray[np.float64]
 
@@ -30,8 +30,8 @@ class CycleMemory:
     the step's start and of the stresses S_j of all kinds of stroke; the part with S_k itself is taken implicitly, the
     others' S_j as they were solved last.
 
-    Neglected: that strains creep during a stroke, under the fluid's pressure above all (``ngwear verify
-    stroke_memory`` measures it, a run states it by ``ngwear.loop.time_step``, and ``Accuracy.parts`` makes it less).
+    Neglected: that strains creep during a stroke, under the fluid's pressure above all (``ngwear verify stroke_memory``
+    measures it, a run states it by ``ngwear.loop.time_step_error``, and ``Accuracy.parts`` makes it less).
 
     Parameters
     ----------

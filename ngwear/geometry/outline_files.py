@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 
 CORNER_ANGLE = np.radians(30.0)  # a file that marks no corners gets one where the polygon turns by more
 

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import GeometryError, MeshError
-from ngwear.geometry.contour import Contour, polygon_area, polygon_moment
+from ngwear.geometry.outline import Contour, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
-from ngwear.loop.remesh import remesh
+from ngwear.loop.remeshing import remesh
 from ngwear.loop.state import State
 from ngwear.scene.scene import ContactSpec
 from ngwear.wear.archard import worn_share
-from ngwear.wear.backward import error_over_difference, share_of_last
-from ngwear.wear.strokes import Strokes
+from ngwear.wear.backward_differences import error_over_difference, share_of_last
+from ngwear.wear.sliding_distance import Strokes
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -34,9 +34,9 @@ class Wearing:
 
     Implicit wear of second order in the step. The outline is foreseen: it moves to where the mean pressure of the last
     step would take it, so that the rubber is as thin, and lies where, it will at the end of the step's last stroke; the
-    depth of the solve is counted from there. Then ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in ``wear.backward``.
-    Where friction may stick, and after a step whose error is large or not known, it is backward Euler on the outline as
-    it was: of first order, and sound where a contact has only begun to spread.
+    depth of the solve is counted from there. Then ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in
+    ``wear.backward_differences``. Where friction may stick, and after a step whose error is large or not known, it is
+    backward Euler on the outline as it was: of first order, and sound where a contact has only begun to spread.
 
     Attributes
     ----------
@@ -181,8 +181,8 @@ class Wearing:
 
         The error of the area is the difference from the trapezoidal rule at the mesh's nodes, its absolute values over
         the outline added up: how mesh edges bulge in turn, and settle, is no matter of the steps' length. That of the
-        depth at a point is what this tells of the step itself (``wear.backward``), with its sign: steps that wear too
-        much here and too little there, or then, have partly made up for it.
+        depth at a point is what this tells of the step itself (``wear.backward_differences``), with its sign: steps
+        that wear too much here and too little there, or then, have partly made up for it.
 
         Raises
         ------
@@ -197,13 +197,13 @@ class Wearing:
         width = halfway.widths(scene.worn_edges)
         shares = {}
         if stage.remembers:
-            from ngwear.loop.lasting_slip import lasting
+            from ngwear.loop.slip_over_cycles import lasting
 
             shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
         if state.counters:
-            from ngwear.loop import counter_wear
+            from ngwear.loop import counter_surface
 
-            state.counters = counter_wear.worn(stage, state.counters, self.index, self.sliding, shares)
+            state.counters = counter_surface.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off, err = np.zeros((3, len(outline)))
         pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
         whole = np.zeros(len(ways))
@@ -232,13 +232,13 @@ class Wearing:
         self._book_depths(share / width, err / width)
         phase.pressure, phase.mean, phase.area, phase.ways = pressure, mean, whole, ways
         if scene.deactivation is not None:
-            from ngwear.loop import deactivation
+            from ngwear.loop import lost_elements
 
             points = receded(outline, share, scene.worn_edges, stage.body.now.inward())
             state.ledger.worn += float(share.sum())
             state.ledger.removed += outline.area - polygon_area(points)
             state.ledger.moment += polygon_moment(outline.points) - polygon_moment(points)
-            deactivation.follow(state, outline, points)
+            lost_elements.follow(state, outline, points)
             return known
         new = recede(outline, share, scene.worn_edges)
         removed, worn = outline.area - new.area, float(share.sum())

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from ngwear import __version__
 from ngwear.errors import ResultError
-from ngwear.files.files import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
+from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
 from ngwear.geometry.cells import Fate
-from ngwear.geometry.contour import Contour
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.sizing import divided
 from ngwear.results.result_file import Snapshot
 from ngwear.scene.scene import Scene

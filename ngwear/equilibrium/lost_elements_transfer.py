@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Array
-from ngwear.equilibrium.carry import contact_pairs, sticking_pairs
 from ngwear.equilibrium.problem import Problem
+from ngwear.equilibrium.state_transfer import contact_pairs, sticking_pairs
 from ngwear.geometry.element_body import ElementBody, Index
 
 NONE = -1

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from ngwear.explanation import adhesion, film, heat, inertia
-from ngwear.explanation.assumed import Assumed
+from ngwear.explanation.assumptions import Assumed
 from ngwear.explanation.verdict import Verdict, onset
 from ngwear.scene.pin_scene import Pin, PinScene
 

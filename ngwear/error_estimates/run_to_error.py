@@ -1,11 +1,11 @@
 """A run that states an error no larger than was asked for: finer and finer levels, the last of which is kept.
 
 A level has two or four times as many elements across the contacts as the one before, and tolerances of stresses and
-wear that go along (``Accuracy``). Within it the run chooses the patch of each zone of a contact with each new mesh,
-the elements elsewhere by their stresses, and the jumps by what the wear steps err by. Levels are the companions of
-finer ones (``ngwear.error_estimates.companion``), so that the first alone needs some of its own; one, if that shows an error small
-enough. Where rubber has memory and its time step errs by more than half of what was asked for, the next level divides
-strokes into more parts, and needs companions of its own.
+wear that go along (``Accuracy``). Within it the run chooses the patch of each zone of a contact with each new mesh, the
+elements elsewhere by their stresses, and the jumps by what the wear steps err by. Levels are the companions of finer
+ones (``ngwear.error_estimates.coarser_runs``), so that the first alone needs some of its own; one, if that shows an
+error small enough. Where rubber has memory and its time step errs by more than half of what was asked for, the next
+level divides strokes into more parts, and needs companions of its own.
 
 The error meant is that of the greatest depth; others are stated beside it.
 """
@@ -20,13 +20,13 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ngwear.error_estimates.companion import COARSER, COARSEST, FILE, coarser, leave, left_by, left_of, run_stated
+from ngwear.error_estimates.coarser_runs import COARSER, COARSEST, FILE, coarser, leave, left_by, left_of, run_stated
 from ngwear.errors import ResultError
-from ngwear.files.files import CHECKPOINT, COMPLETED, OutFolder
+from ngwear.files.result_folder import CHECKPOINT, COMPLETED, OutFolder
 from ngwear.loop.run import Result
 from ngwear.parallel.workers import Worker
-from ngwear.results.readings import BY_TIME_STEP, DEPTH
-from ngwear.results.results import fingerprint
+from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH
+from ngwear.results.recorder import fingerprint
 from ngwear.scene.accuracy import MOST_ACROSS
 from ngwear.scene.scene import Scene
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ngwear.results.results import EDGE, LEAK
+from ngwear.results.recorder import EDGE, LEAK
 from ngwear.scene.program import whole_name
 
 Rows = list[dict[str, Any]]

@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from ngwear.explanation import heat
-from ngwear.explanation.assumed import Assumed
-from ngwear.explanation.pressing import Strip
+from ngwear.explanation.assumptions import Assumed
+from ngwear.explanation.contact_pressures import Strip
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder, Plane
 

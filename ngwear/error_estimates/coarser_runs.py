@@ -1,8 +1,8 @@
 """What a run says of its own error: the same scene twice more, two and four times coarser in every setting.
 
 A hierarchical estimate of what is read off, mesh and wear steps together: the companions' elements have edges of two
-and four times the length, and their jumps may err by two and four times as much. ``ngwear.results.seen_order`` tells from all
-three in which order they converge, and what that leaves in the finest.
+and four times the length, and their jumps may err by two and four times as much. ``ngwear.results.richardson`` tells
+from all three in which order they converge, and what that leaves in the finest.
 
 By where a mesh happens to put its nodes, a peak of pressure or the end of a contact errs by another amount at each
 stroke. So histories are compared, at the same strokes of the last half of the run, and the error is that of their
@@ -44,10 +44,10 @@ from ngwear.errors import NgwearError
 from ngwear.loop.run import DrawnHere, Result
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.workers import Worker
-from ngwear.results.readings import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
+from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
+from ngwear.results.recorder import TORN, Recorder, fingerprint
 from ngwear.results.result_file import Snapshot
-from ngwear.results.results import TORN, Recorder, fingerprint
-from ngwear.results.seen_order import Reading, relative_errors
+from ngwear.results.richardson import Reading, relative_errors
 from ngwear.scene.accuracy import LEAST_ACROSS
 from ngwear.scene.scene import Scene
 

@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable
 
 from ngwear.explanation import adhesion, film, heat, inertia, relaxation
-from ngwear.explanation.assumed import Assumed
-from ngwear.explanation.pressing import Pressing, Strip
+from ngwear.explanation.assumptions import Assumed
+from ngwear.explanation.contact_pressures import Pressing, Strip
+from ngwear.explanation.surface_temperature import warming
 from ngwear.explanation.verdict import Verdict, onset
-from ngwear.explanation.warming import warming
-from ngwear.loop.drift import friction_range
+from ngwear.loop.law_changes import friction_range
 from ngwear.materials.library import FILLED_ARMS, FILLED_LONG_TERM, FILLED_TIMES
 from ngwear.scene.scene import Scene
 

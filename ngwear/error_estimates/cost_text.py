@@ -6,10 +6,10 @@ import itertools
 import math
 from collections.abc import Sequence
 
-from ngwear.error_estimates.climb import Choice
+from ngwear.error_estimates.convergence_order import relative
+from ngwear.error_estimates.cost_study import Study
 from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement, Setting
-from ngwear.error_estimates.order import relative
-from ngwear.error_estimates.study import Study
+from ngwear.error_estimates.settings_search import Choice
 
 
 def name_of(quantity: str) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ngwear.loop.stage import Stage
 from ngwear.scene.program import Program
 from ngwear.surfaces import WornProfile
-from ngwear.wear.strokes import Strokes
+from ngwear.wear.sliding_distance import Strokes
 
 Array = NDArray[np.float64]
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from ngwear.error_estimates.climb import Choice
+from ngwear.error_estimates.cost_study import Study
+from ngwear.error_estimates.cost_text import name_of
 from ngwear.error_estimates.ladder import Setting, told
-from ngwear.error_estimates.study import Study
-from ngwear.error_estimates.words import name_of
+from ngwear.error_estimates.settings_search import Choice
 
 
 def finite(number: float | None) -> float | None:

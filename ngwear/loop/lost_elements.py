@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.equilibrium.keep import keep
+from ngwear.equilibrium.lost_elements_transfer import keep
 from ngwear.errors import GeometryError, MeshError, SceneError, require
 from ngwear.geometry.cells import Cells, Fate
-from ngwear.geometry.contour import Contour
 from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.layers import layered
+from ngwear.geometry.outline import Contour
 from ngwear.geometry.recession import STEEPEST
 from ngwear.laws.damage import Stresses
-from ngwear.loop.remesh import adopt
+from ngwear.loop.remeshing import adopt
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.scene.scene import Scene

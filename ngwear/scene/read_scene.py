@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import SceneError
-from ngwear.geometry.contour_files import read_contour
+from ngwear.geometry.outline_files import read_contour
 from ngwear.scene.pin_scene import KIND as PIN
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.program import Program, Stroke
@@ -17,7 +17,7 @@ from ngwear.scene.read_laws import read_friction, read_wear_law, read_wear_rate
 from ngwear.scene.read_material import read_arms, read_material
 from ngwear.scene.read_pin import pin_scene
 from ngwear.scene.scene import Accuracy, ContactSpec, FluidSpec, Save, Scene, SupportSpec, Wear
-from ngwear.scene.tables import coordinate, get, known, record, subtable, tables, typed
+from ngwear.scene.toml_values import coordinate, get, known, record, subtable, tables, typed
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
 TABLES = {

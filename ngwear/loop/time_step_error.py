@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
-from ngwear.results.readings import AREA, BY_TIME_STEP, DEPTH, FRICTION, PEAK
-from ngwear.results.seen_order import relative_errors
+from ngwear.results.quantities_of_interest import AREA, BY_TIME_STEP, DEPTH, FRICTION, PEAK
+from ngwear.results.richardson import relative_errors
 from ngwear.scene.program import whole_name
 
 REMAINS = 2.0  # of first order: the error over what halves change
