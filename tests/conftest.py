@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.scene.read_scene import read_scene
 
 TESTS = Path(__file__).parent
@@ -165,10 +165,10 @@ def finished(_finished_once, tmp_path):
     return Path(shutil.copytree(_finished_once, tmp_path / "finished"))
 
 
-def _circle(n: int, radius: float = 1.0, centre=(0.0, 0.0)) -> Contour:
+def _circle(n: int, radius: float = 1.0, centre=(0.0, 0.0)) -> Outline:
     angle = 2 * np.pi * np.arange(n) / n
     points = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1) + centre
-    return Contour(points, ("rim",) * n, np.zeros(n, dtype=bool))
+    return Outline(points, ("rim",) * n, np.zeros(n, dtype=bool))
 
 
 @pytest.fixture(scope="session")
@@ -177,7 +177,7 @@ def circle():
     return _circle
 
 
-def _rectangle(width: float, height: float, nx: int = 1, ny: int = 1) -> Contour:
+def _rectangle(width: float, height: float, nx: int = 1, ny: int = 1) -> Outline:
     ends = [(0, 0, "bottom", nx), (width, 0, "right", ny), (width, height, "top", nx), (0, height, "left", ny)]
     points, names, corners = [], [], []
     for k, (x, y, name, n) in enumerate(ends):
@@ -185,7 +185,7 @@ def _rectangle(width: float, height: float, nx: int = 1, ny: int = 1) -> Contour
         points += [(x + (x2 - x) * i / n, y + (y2 - y) * i / n) for i in range(n)]
         names += [name] * n
         corners += [True] + [False] * (n - 1)
-    return Contour(np.array(points), tuple(names), np.array(corners))
+    return Outline(np.array(points), tuple(names), np.array(corners))
 
 
 @pytest.fixture(scope="session")

@@ -14,14 +14,14 @@ from ngwear.effects.base import DISPLACEMENT, Unknowns
 from ngwear.effects.contact_profile import ContactProfile, EdgeNodes, nodal_pressure
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.surfaces import RigidSurface, WornProfile
 
 Array = NDArray[np.float64]
 ENDS = ng.IntegrationRule([(0.0,), (1.0,)], [0.5, 0.5])
 
 
-class Contact(UnilateralContact):
+class OutlineContact(UnilateralContact):
     """Contact on named edges of an outline; the nominal pressure is discontinuous and linear on each mesh edge.
 
     A surface that slides (``slides=True``) also moves across its approach, turned by +90 degrees, by the load
@@ -100,7 +100,7 @@ class Contact(UnilateralContact):
         line = body.outline
         self.positions = line.on(self.edges)
         self.nodes = EdgeNodes.on(body, self.positions)
-        self._measured: tuple[Contour, Array] | None = None
+        self._measured: tuple[Outline, Array] | None = None
         points = body.mesh.MapToAllElements(ENDS, region)
         row = {int(nr): k for k, nr in enumerate(points["nr"][::2])}
         rows = np.array([row[int(nr)] for nr in line.element[self.positions]])

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 
 Array = NDArray[np.float64]
 
@@ -44,7 +44,7 @@ class EdgeNodes:
     Attributes
     ----------
     t : array, shape (k,)
-        Contour parameter of each node, ascending.
+        Outline parameter of each node, ascending.
     of_edges : array of int, shape (m, 2)
         The two nodes of each mesh edge.
     """
@@ -84,7 +84,7 @@ class ContactProfile:
     Attributes
     ----------
     t : array, shape (k,)
-        Contour parameter of each node.
+        Outline parameter of each node.
     reference, place : array, shape (k, 2)
         Coordinates on the undeformed and on the deformed outline [mm].
     nominal_pressure : array, shape (k,)
@@ -118,7 +118,7 @@ class ContactProfile:
     def from_samples(
         cls,
         nodes: EdgeNodes,
-        contour: Contour,
+        contour: Outline,
         lengths: Array,
         *,
         pressure: Array,

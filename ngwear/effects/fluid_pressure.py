@@ -8,7 +8,7 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.errors import SceneError
 from ngwear.geometry.body import Body
 
@@ -33,7 +33,7 @@ class FluidPressure(Term):
         Edges that the fluid may reach; they must be one piece of the outline with the inlet among them.
     inlet : sequence of str
         Edges that are always wetted.
-    contacts : sequence of Contact
+    contacts : sequence of OutlineContact
         Contacts that can stop the fluid.
 
     Raises
@@ -44,7 +44,7 @@ class FluidPressure(Term):
 
     symmetric = False
 
-    def __init__(self, edges: Sequence[str], inlet: Sequence[str], contacts: Sequence[Contact]) -> None:
+    def __init__(self, edges: Sequence[str], inlet: Sequence[str], contacts: Sequence[OutlineContact]) -> None:
         super().__init__()
         self.edges, self.inlet, self.contacts = tuple(edges), tuple(inlet), tuple(contacts)
         if not self.inlet or not set(self.inlet) <= set(self.edges):
@@ -123,7 +123,7 @@ class FluidPressure(Term):
         return touching, outside, carried
 
     def fronts(self) -> np.ndarray:
-        """Contour parameters at which the fluid meets a contact in the present state; none on a way without one."""
+        """Outline parameters at which the fluid meets a contact in the present state; none on a way without one."""
         touching, _, _ = self._contact()
         first = [(step, path[touching[path]][:1]) for step, path in self._paths]
         return np.concatenate([self._body.outline.t[edge, 0 if step == 1 else 1] for step, edge in first])

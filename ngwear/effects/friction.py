@@ -11,7 +11,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
 from ngwear.effects.coefficient import Coefficient
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.ripples import Ripples
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.laws import Constant, FrictionLaw
@@ -106,7 +106,7 @@ class FullSliding(Friction):
         stretch = unknowns.kinematics.area_stretch(u, ng.Grad(u).Trace())
         mu = self.coefficient(p / stretch) * unknowns.kinematics.weight
         work = -mu * self.slip * p * sum(t * v for t, v in zip(tangent, contact.virtual(unknowns), strict=True))
-        if isinstance(contact, Contact):
+        if isinstance(contact, OutlineContact):
             self._ripples = Ripples(contact, unknowns)
         if self._ripples is not None and not self.stepped:
             work += mu * ng.IfPos(self.slip, self.slip, -self.slip) * self._ripples.moved

@@ -8,7 +8,7 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 
 SHIFT = 0.25  # of a mesh edge
 TOUCHING = 1e-2  # of the highest pressure: what is reckoned as contact
@@ -39,7 +39,7 @@ class Ripples:
     tangent.
     """
 
-    def __init__(self, contact: Contact, unknowns: Unknowns) -> None:
+    def __init__(self, contact: OutlineContact, unknowns: Unknowns) -> None:
         self._contact, self._unknowns = contact, unknowns
         self._smooth = ng.GridFunction(unknowns.state[contact.pressure_name].space)
         along = ng.specialcf.tangential(2)

@@ -6,7 +6,7 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
 
@@ -87,7 +87,7 @@ def _unstable_surface(problem: Problem) -> str:
 
     found = []
     for term in problem.terms:
-        if isinstance(term, Friction) and isinstance(term.contact, Contact) and term.contact.peak() > 0:
+        if isinstance(term, Friction) and isinstance(term.contact, OutlineContact) and term.contact.peak() > 0:
             contact = term.contact
             slip = abs(term.slip.Get()) if isinstance(term, FullSliding) else 1.0
             told = (

@@ -85,7 +85,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
 
     On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
     somewhere) are refused and the correction is halved, a few times. A solve that gets nowhere is tried
-    once more with softer contacts (see ``Contact``).
+    once more with softer contacts (see ``OutlineContact``).
     """
     options = options or NewtonOptions()
     for term in problem.terms:

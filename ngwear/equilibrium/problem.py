@@ -30,7 +30,7 @@ Loads = Mapping[str, float]
 
 
 @dataclass(frozen=True)
-class Support:
+class FixedEdges:
     """Edges whose displacement is prevented in some directions.
 
     Parameters
@@ -55,7 +55,7 @@ class Problem:
     kinematics : Kinematics
     terms : sequence of Term
         Only what is listed exists: no unknown, memory or zero term of anything else.
-    supports : sequence of Support
+    supports : sequence of FixedEdges
     order : int
         Polynomial order of the displacement.
     """
@@ -66,7 +66,7 @@ class Problem:
         kinematics: Kinematics,
         terms: Sequence[Term],
         *,
-        supports: Sequence[Support] = (),
+        supports: Sequence[FixedEdges] = (),
         order: int = 2,
     ) -> None:
         self.body, self.kinematics, self.terms = body, kinematics, tuple(terms)

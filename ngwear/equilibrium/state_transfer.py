@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.contact_patch import PatchContact
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.displacements import from_quadratic
@@ -120,10 +120,10 @@ def _fill_harmonically(u: ng.GridFunction, marked: NDArray[np.bool_]) -> None:
     values[:] = HarmonicFill(matrix, np.fromiter(free, dtype=bool))(values)
 
 
-def contact_pairs(old: Problem, new: Problem) -> list[tuple[Contact, Contact]]:
+def contact_pairs(old: Problem, new: Problem) -> list[tuple[OutlineContact, OutlineContact]]:
     """Contacts of one problem beside those of another of the same scene."""
-    before = {t.name: t for t in old.terms if isinstance(t, Contact)}
-    return [(before[t.name], t) for t in new.terms if isinstance(t, Contact)]
+    before = {t.name: t for t in old.terms if isinstance(t, OutlineContact)}
+    return [(before[t.name], t) for t in new.terms if isinstance(t, OutlineContact)]
 
 
 def sticking_pairs(old: Problem, new: Problem) -> list[tuple[StickSlip, StickSlip]]:
@@ -148,7 +148,9 @@ def _node_places(problem: Problem) -> Array:
     return np.stack(columns, axis=1)
 
 
-def _neighbours(old: Contact, new: Contact) -> tuple[NDArray[np.intp], Array, NDArray[np.bool_], NDArray[np.intp]]:
+def _neighbours(
+    old: OutlineContact, new: OutlineContact
+) -> tuple[NDArray[np.intp], Array, NDArray[np.bool_], NDArray[np.intp]]:
     """For both ends of each new mesh edge the two nearest old nodes and their weights; and which edges are old ones."""
     places, before = new.end_places(), old.end_places()
     distance, index = cKDTree(old.profile().reference).query(places, k=2)

@@ -16,7 +16,7 @@ from ngwear.loop.refinement import wanted_size
 from ngwear.loop.stage import Stage
 from ngwear.loop.stepper import MAY_COME
 from ngwear.scene.program import Stroke
-from ngwear.scene.scene import ContactSpec, Scene
+from ngwear.scene.scene import Contact, Scene
 
 Array = NDArray[np.float64]
 POINTS = 12  # of the background in each triangle
@@ -29,7 +29,7 @@ class Strip:
 
     Attributes
     ----------
-    contact : ContactSpec
+    contact : Contact
     stroke : Stroke
     load : float
         Normal force per length across the section [N/mm].
@@ -41,7 +41,7 @@ class Strip:
         Its middle, deformed [mm].
     """
 
-    contact: ContactSpec
+    contact: Contact
     stroke: Stroke
     load: float
     width: float
@@ -115,7 +115,7 @@ def _kinds(scene: Scene) -> list[Stroke]:
     return list(found.values())
 
 
-def _strips(stage: Stage, spec: ContactSpec, stroke: Stroke) -> list[Strip]:
+def _strips(stage: Stage, spec: Contact, stroke: Stroke) -> list[Strip]:
     profile = stage.contacts[spec.name].profile()
     found = []
     for zone in profile.zones():

@@ -11,7 +11,7 @@ from ngwear.laws import Constant
 from ngwear.loop.element_sizes import chosen, laid_out
 from ngwear.loop.law_changes import friction_range
 from ngwear.scene.deactivation import Deactivation
-from ngwear.scene.scene import ContactSpec, Scene
+from ngwear.scene.scene import Contact, Scene
 from ngwear.wear.archard import critical_distance
 
 if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
@@ -166,7 +166,7 @@ def _deactivation_in_words(deactivation: Deactivation) -> str:
     return "; ".join(told)
 
 
-def _friction_in_words(scene: Scene, contact: ContactSpec) -> str:
+def _friction_in_words(scene: Scene, contact: Contact) -> str:
     law = contact.friction_law
     words = f"{'stick and slip' if scene.may_stick(contact) else 'full sliding'}, {law.words}"
     if not isinstance(law, Constant):
@@ -176,7 +176,7 @@ def _friction_in_words(scene: Scene, contact: ContactSpec) -> str:
     return f"{words}: {scene.why_it_may_stick(contact)}"
 
 
-def _wear_in_words(scene: Scene, contact: ContactSpec) -> str:
+def _wear_in_words(scene: Scene, contact: Contact) -> str:
     rate, end = contact.wear_rate, scene.program.slid(scene.program.strokes)
     low, high = rate.curve.extremes(0.0, end)
     return f"by lubrication, {len(rate.distance)} rows; the scene meets k = {low:g} to {high:g} mm²/N"

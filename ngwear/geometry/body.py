@@ -13,14 +13,14 @@ from ngwear.errors import MeshError
 from ngwear.geometry import nodal, section
 from ngwear.geometry.harmonic import HarmonicFill
 from ngwear.geometry.meshed import Meshed
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 FINER = (1.0, 2.0, 4.0)  # how much less the outline may turn along an element edge: a curved one cuts its corner
 
 
 @dataclass(frozen=True)
-class Outline:
+class BoundaryEdges:
     """The mesh's boundary edges in the order of the outline (counter-clockwise).
 
     Attributes
@@ -32,7 +32,7 @@ class Outline:
     edge : array of int, shape (m,)
         Mesh edge numbers.
     t : array, shape (m, 2)
-        Contour parameters at start and end; the last one ends at n, the outline's number of points.
+        Outline parameters at start and end; the last one ends at n, the outline's number of points.
     names : array of str, shape (m,)
     """
 
@@ -56,7 +56,7 @@ class Body(Meshed):
 
     Parameters
     ----------
-    contour : Contour
+    contour : Outline
     field : SizeField
         Wanted element edges.
     on_chord : bool
@@ -68,7 +68,7 @@ class Body(Meshed):
         If the new mesh does not pass its gates.
     """
 
-    def __init__(self, contour: Contour, field: SizeField, *, on_chord: bool = False) -> None:
+    def __init__(self, contour: Outline, field: SizeField, *, on_chord: bool = False) -> None:
         self.field = field
         self.base = self.contour = fitted(contour, field, on_chord=on_chord)
         self.mesh = _meshed(self.base, field)
@@ -105,7 +105,7 @@ class Body(Meshed):
         self._deform()
         return HarmonicFill(matrix, np.fromiter(space.FreeDofs(), dtype=bool))
 
-    def move_to(self, contour: Contour) -> None:
+    def move_to(self, contour: Outline) -> None:
         """Let the mesh follow to an outline that has the points of ``base``, displaced.
 
         Raises
@@ -149,7 +149,7 @@ class Body(Meshed):
         return float(np.ptp(self.contour.points, axis=0).max())
 
 
-def _meshed(contour: Contour, field: SizeField) -> ng.Mesh:
+def _meshed(contour: Outline, field: SizeField) -> ng.Mesh:
     """Mesh an outline, with shorter edges where it turns until the mesh passes its gates, or none does."""
     for finer in FINER:
         turns = {"turn": field.turn / finer, "elsewhere": field.elsewhere / finer}
@@ -161,7 +161,7 @@ def _meshed(contour: Contour, field: SizeField) -> ng.Mesh:
     raise refused
 
 
-def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:
+def _outline(mesh: ng.Mesh, contour: Outline) -> BoundaryEdges:
     """Order the boundary elements along the outline and find the contour parameters of their ends."""
     points, _ = section.mesh_arrays(mesh)
     scale = contour.lengths.sum()
@@ -190,11 +190,11 @@ def _outline(mesh: ng.Mesh, contour: Contour) -> Outline:
     t = t[order]
     if not np.allclose(t[1:, 0], t[:-1, 1]) or not np.isclose(t[-1, 1], t[0, 0] + n):
         raise MeshError("the mesh's boundary does not follow the outline")
-    return Outline(numbers[order], ends[order], edge[order], t, names[order])
+    return BoundaryEdges(numbers[order], ends[order], edge[order], t, names[order])
 
 
-def _project(contour: Contour, point: Array, tolerance: float) -> float:
-    """Contour parameter of a point that the mesher put on the outline."""
+def _project(contour: Outline, point: Array, tolerance: float) -> float:
+    """Outline parameter of a point that the mesher put on the outline."""
     a = contour.points
     b = np.roll(a, -1, axis=0)
     s = np.clip(((point - a) * (b - a)).sum(axis=1) / contour.lengths**2, 0, 1)

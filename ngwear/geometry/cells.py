@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 
 Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
@@ -116,9 +116,9 @@ class Cells:
         return float(self.areas()[self.living].sum())
 
     @property
-    def contour(self) -> Contour:
+    def contour(self) -> Outline:
         """The outline, straight between its points."""
-        return Contour(self.points[self.rim], self.names, np.ones(len(self.rim), dtype=bool), self.provenance)
+        return Outline(self.points[self.rim], self.names, np.ones(len(self.rim), dtype=bool), self.provenance)
 
     def moved(self, points: Array) -> Cells:
         """The same with the outline's points elsewhere, shape (k, 2); those inside stay."""

@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import MeshError
-from ngwear.geometry.body import Outline
+from ngwear.geometry.body import BoundaryEdges
 from ngwear.geometry.cells import HOLE, Cells
 from ngwear.geometry.meshed import Meshed
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 
 Index = NDArray[np.intp]
 FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded
@@ -29,9 +29,9 @@ class ElementBody(Meshed):
 
     Attributes
     ----------
-    base, contour : Contour
+    base, contour : Outline
         The outline that was meshed, and the present one: closed polygons of element edges.
-    outline : Outline
+    outline : BoundaryEdges
     vertices : array of int, shape (nv,)
         Point of ``cells`` at each mesh vertex.
     numbers : array of int, shape (ne,)
@@ -81,7 +81,7 @@ class ElementBody(Meshed):
             raise MeshError(f"nothing of the edges {list(edges)} is left: all of their elements are lost")
         return super().boundary(left)
 
-    def move_to(self, contour: Contour) -> None:
+    def move_to(self, contour: Outline) -> None:
         """Let the surface nodes go to an outline that has the points of ``base``, displaced.
 
         Raises
@@ -107,7 +107,7 @@ class ElementBody(Meshed):
             self.deformation.components[component].vec.FV().NumPy()[where] = shift[:, component]
         self.mesh.SetDeformation(self.deformation)
 
-    def _outline(self) -> Outline:
+    def _outline(self) -> BoundaryEdges:
         """The boundary elements in the order of the outline, whose points are the mesh's vertices."""
         n = len(self.base)
         vertex = {point: k for k, point in enumerate(self.vertices.tolist())}
@@ -116,7 +116,7 @@ class ElementBody(Meshed):
         element = {tuple(sorted(v.nr for v in e.vertices)): (e.nr, e.edges[0].nr) for e in self.mesh.Elements(ng.BND)}
         found = np.array([element[tuple(sorted(pair))] for pair in vertices.tolist()])
         t = np.stack([np.arange(n), np.arange(1, n + 1)], axis=1).astype(float)
-        return Outline(found[:, 0], vertices, found[:, 1], t, np.array(self.base.names))
+        return BoundaryEdges(found[:, 0], vertices, found[:, 1], t, np.array(self.base.names))
 
 
 def _mesh(cells: Cells) -> tuple[ng.Mesh, Index, Index]:

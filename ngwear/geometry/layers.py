@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry import section
 from ngwear.geometry.cells import Cells, outlined
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 Index = NDArray[np.intp]
@@ -21,13 +21,13 @@ INSIDE = "between layers and triangles"
 
 
 def layered(
-    contour: Contour, edges: tuple[str, ...], *, depth: float, edge: float, coarse: float, grading: float
+    contour: Outline, edges: tuple[str, ...], *, depth: float, edge: float, coarse: float, grading: float
 ) -> Cells:
     """Mesh a section: the named edges, in one piece, copied inwards into layers of quadrilaterals.
 
     Parameters
     ----------
-    contour : Contour
+    contour : Outline
     edges : tuple of str
         Edges that wear; seen along the line from their first to their last point they must not overhang.
     depth : float
@@ -71,7 +71,7 @@ def layered(
     return cells
 
 
-def _require_inside(contour: Contour, grid: Array) -> None:
+def _require_inside(contour: Outline, grid: Array) -> None:
     """The layers' far side must lie in the section, with room for triangles beyond it."""
     from shapely import Polygon, contains_xy
 
@@ -82,7 +82,7 @@ def _require_inside(contour: Contour, grid: Array) -> None:
         raise GeometryError(f"layers of {depth:.3g} mm leave the section at {place}: take fewer")
 
 
-def _face(contour: Contour, edges: tuple[str, ...], edge: float) -> tuple[Array, list[str]]:
+def _face(contour: Outline, edges: tuple[str, ...], edge: float) -> tuple[Array, list[str]]:
     """Nodes along the named edges, about ``edge`` apart, and the name of each piece between two."""
     on = contour.on(edges)
     starts = np.flatnonzero(on & ~np.roll(on, 1))
@@ -110,8 +110,8 @@ def _face(contour: Contour, edges: tuple[str, ...], edge: float) -> tuple[Array,
 
 
 def _rest(
-    contour: Contour, edges: tuple[str, ...], grid: Array, number: Index, same: float
-) -> tuple[Contour, dict[tuple[int, int], str]]:
+    contour: Outline, edges: tuple[str, ...], grid: Array, number: Index, same: float
+) -> tuple[Outline, dict[tuple[int, int], str]]:
     """Outline of the section without its layers, and the names of the layers' own sides."""
     on, n = contour.on(edges), len(contour)
     end = int(np.flatnonzero(on & ~np.roll(on, -1))[0]) + 1  # the worn run's last point
@@ -135,7 +135,7 @@ def _rest(
     more = len(ring) - len(names)
     flags = np.concatenate([corners, np.ones(len(ring) - len(corners), dtype=bool)])
     flags[[0, len(points) - 1]] = True
-    return Contour(np.array(ring), (*names, *[INSIDE] * more), flags), sides
+    return Outline(np.array(ring), (*names, *[INSIDE] * more), flags), sides
 
 
 def _beside(points: Array, names: list[str], side: Array, same: float) -> tuple[int, str]:
@@ -156,7 +156,7 @@ def _beside(points: Array, names: list[str], side: Array, same: float) -> tuple[
 
 
 def _filled(
-    rest: Contour, edge: float, coarse: float, grading: float
+    rest: Outline, edge: float, coarse: float, grading: float
 ) -> tuple[Array, Index, dict[tuple[int, int], str]]:
     """Triangles of the rest: points, corners, and the name of each side on its outline."""
     interface = rest.on((INSIDE,))

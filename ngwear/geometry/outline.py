@@ -33,7 +33,7 @@ def polygon_moment(points: Array) -> float:
 
 
 @dataclass(frozen=True)
-class Contour:
+class Outline:
     """A closed, counter-clockwise outline; its polygon is the truth for area and worn area.
 
     Segment i runs from point i to point i + 1 (the last one closes the outline). A *contour
@@ -100,7 +100,7 @@ class Contour:
         return len(self.points)
 
     @classmethod
-    def rectangle(cls, x: tuple[float, float], y: tuple[float, float]) -> Contour:
+    def rectangle(cls, x: tuple[float, float], y: tuple[float, float]) -> Outline:
         """Rectangle with the edges bottom, right, top and left."""
         corners = np.array([[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
         return cls(corners, ("bottom", "right", "top", "left"), np.ones(4, dtype=bool))
@@ -222,11 +222,11 @@ class Contour:
         )
         return np.where(within, arc, chord)
 
-    def moved(self, displacement: Array) -> Contour:
+    def moved(self, displacement: Array) -> Outline:
         """Return the outline with its points displaced, shape (n, 2); names and corners stay."""
         return replace(self, points=self.points + displacement)
 
-    def inserted(self, t: Array, *, on_chord: bool = False) -> Contour:
+    def inserted(self, t: Array, *, on_chord: bool = False) -> Outline:
         """Return the outline with points added at the (non-integer) parameters t.
 
         They lie on the spline, or on the polygon (``on_chord``), whose area then stays exactly the same.
@@ -244,7 +244,7 @@ class Contour:
             corners=np.insert(self.corners, at, False),
         )
 
-    def without(self, drop: NDArray[np.bool_]) -> Contour:
+    def without(self, drop: NDArray[np.bool_]) -> Outline:
         """Return the outline without the marked points, shape (n,)."""
         keep = ~drop
         return replace(

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 
 CORNER_ANGLE = np.radians(30.0)  # a file that marks no corners gets one where the polygon turns by more
 
 
-def read_contour(path: Path) -> Contour:
+def read_outline(path: Path) -> Outline:
     """Read an outline by the file's ending: ``.toml``, ``.csv``, ``.step`` or ``.stp``.
 
     Raises
@@ -37,7 +37,7 @@ def read_contour(path: Path) -> Contour:
         raise GeometryError(f"{path}: cannot be read as an outline: {error!r}") from error
 
 
-def _toml(path: Path) -> Contour:
+def _toml(path: Path) -> Outline:
     """``[[edge]]`` tables in counter-clockwise order: name, corner (at its first point), points [[x, y], ...]."""
     data: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
     unknown = set(data) - {"title", "provenance", "coordinates", "edge"}
@@ -56,10 +56,10 @@ def _toml(path: Path) -> Contour:
         points += own
         names += [str(edge["name"])] * len(own)
         corners += [bool(edge.get("corner", True))] + [False] * (len(own) - 1)
-    return Contour(np.array(points), tuple(names), np.array(corners), str(data.get("provenance", path.name)))
+    return Outline(np.array(points), tuple(names), np.array(corners), str(data.get("provenance", path.name)))
 
 
-def _csv(path: Path) -> Contour:
+def _csv(path: Path) -> Outline:
     """Columns ``x [mm], y [mm], edge`` and optionally ``corner`` (0 or 1), one row a point, counter-clockwise."""
     with path.open(newline="", encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
@@ -73,7 +73,7 @@ def _csv(path: Path) -> Contour:
     names = tuple((row["edge"] or "").strip() for row in rows)
     marked = "corner" in columns
     corners = np.array([bool(int(row["corner"])) for row in rows]) if marked else _sharp(points)
-    return Contour(points, names, corners, path.name)
+    return Outline(points, names, corners, path.name)
 
 
 def _sharp(points: np.ndarray) -> np.ndarray:
@@ -82,7 +82,7 @@ def _sharp(points: np.ndarray) -> np.ndarray:
     return np.abs((angle - np.roll(angle, 1) + np.pi) % (2 * np.pi) - np.pi) > CORNER_ANGLE
 
 
-def _step(path: Path) -> Contour:
+def _step(path: Path) -> Outline:
     """The first face of the file, in its x-y plane; edges keep their names or are called ``edge 1`` and so on."""
     import netgen.occ as occ
 
@@ -115,7 +115,7 @@ def _sampled(edge: Any, max_turn: float = 0.2) -> np.ndarray:
     return points
 
 
-def _joined(pieces: list[tuple[str, np.ndarray]], provenance: str) -> Contour:
+def _joined(pieces: list[tuple[str, np.ndarray]], provenance: str) -> Outline:
     """Chain edge polylines head to tail into a counter-clockwise outline."""
     scale = max(np.ptp(np.vstack([p for _, p in pieces]), axis=0))
     rest = pieces[1:]
@@ -140,4 +140,4 @@ def _joined(pieces: list[tuple[str, np.ndarray]], provenance: str) -> Contour:
         points = np.roll(points[::-1], 1, axis=0)
         names = names[::-1]
     starts = np.array([any(np.allclose(p, end) for _, own in chain for end in (own[0], own[-1])) for p in points])
-    return Contour(points, tuple(names), starts, provenance)
+    return Outline(points, tuple(names), starts, provenance)

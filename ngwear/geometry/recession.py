@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField
 
 OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when an outline is healed
@@ -17,7 +17,7 @@ STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which 
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment
 
 
-def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contour:
+def recede(contour: Outline, area: Array, worn_edges: tuple[str, ...]) -> Outline:
     """Take ``area`` [mm²], given at each contour point, off the outline.
 
     Points move along their normals, ends of the worn edges along the unworn neighbour. With directions m
@@ -30,7 +30,7 @@ def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contou
 
     Parameters
     ----------
-    contour : Contour
+    contour : Outline
     area : array, shape (n,)
         Area to remove at each point, >= 0.
     worn_edges : tuple of str
@@ -38,7 +38,7 @@ def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contou
 
     Returns
     -------
-    Contour
+    Outline
         With the same points displaced, or with other points if it had to be healed.
 
     Raises
@@ -55,7 +55,7 @@ def recede(contour: Contour, area: Array, worn_edges: tuple[str, ...]) -> Contou
         return healed(contour, points)
 
 
-def receded(contour: Contour, area: Array, worn_edges: tuple[str, ...], columns: Array | None = None) -> Array:
+def receded(contour: Outline, area: Array, worn_edges: tuple[str, ...], columns: Array | None = None) -> Array:
     """The outline's points after that, whether or not it then crosses itself; shape (n, 2) [mm].
 
     ``columns`` are unit vectors along which points shall move instead of their normals, shape (n, 2); zero for none.
@@ -73,7 +73,7 @@ def receded(contour: Contour, area: Array, worn_edges: tuple[str, ...], columns:
 
 
 def _displacement(
-    points: Array, area: Array, contour: Contour, worn_edges: tuple[str, ...], columns: Array | None
+    points: Array, area: Array, contour: Outline, worn_edges: tuple[str, ...], columns: Array | None
 ) -> Array:
     chord = np.roll(points, -1, axis=0) - np.roll(points, 1, axis=0)
     inward = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
@@ -105,7 +105,7 @@ def _cross(a: Array, b: Array) -> Array:
     return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
 
 
-def healed(before: Contour, after: Array) -> Contour:
+def healed(before: Outline, after: Array) -> Outline:
     """Rebuild a crossing outline: the section minus what the outline has swept, opened, its largest piece.
 
     Points take edge names and corners from the nearest point of the receded outline.
@@ -139,7 +139,7 @@ def healed(before: Contour, after: Array) -> Contour:
     return _renamed(before, after, _with_points(np.array(ring.coords)[:-1], after))
 
 
-def refuse_worn_through(contour: Contour) -> None:
+def refuse_worn_through(contour: Outline) -> None:
     """GeometryError if a section is nowhere thicker than what healing would take off, or falls apart by it."""
     from shapely import Polygon
 
@@ -164,7 +164,7 @@ def _with_points(ring: Array, points: Array) -> Array:
     return np.vstack(out)
 
 
-def _renamed(before: Contour, after: Array, points: Array) -> Contour:
+def _renamed(before: Outline, after: Array, points: Array) -> Outline:
     from scipy.spatial import cKDTree
 
     x, y = points.T
@@ -182,10 +182,10 @@ def _renamed(before: Contour, after: Array, points: Array) -> Contour:
     sharp = np.abs((angle - np.roll(angle, 1) + np.pi) % (2 * np.pi) - np.pi) > np.radians(30)
     on_point = np.linalg.norm(after[nearest] - points, axis=1) < 1e-6
     corners = np.where(on_point, before.corners[nearest], False) | sharp
-    return Contour(points, names, corners, before.provenance)
+    return Outline(points, names, corners, before.provenance)
 
 
-def tidied(contour: Contour, field: SizeField) -> Contour:
+def tidied(contour: Outline, field: SizeField) -> Outline:
     """Merge segments shorter than 0.4 h into one point each, keeping the polygon's area exactly."""
     while True:
         h = np.minimum(field(contour.points), field(np.roll(contour.points, -1, axis=0)))
@@ -210,7 +210,7 @@ def tidied(contour: Contour, field: SizeField) -> Contour:
         contour = replace(contour, points=points).without(drop)
 
 
-def _beside_fixed(contour: Contour, fixed: NDArray[np.bool_], h: Array) -> NDArray[np.bool_]:
+def _beside_fixed(contour: Outline, fixed: NDArray[np.bool_], h: Array) -> NDArray[np.bool_]:
     """Points so close to a fixed one that they can go, on a straight piece: a worn corner that slides uses them up."""
     short = contour.lengths < 0.4 * np.minimum(h, np.median(contour.lengths))
     chord = np.roll(contour.points, -1, axis=0) - np.roll(contour.points, 1, axis=0)

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import MeshError
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField
 
 MIN_ANGLE = 12.0  # degrees; the mesher usually reaches 28
 
 
-def face(contour: Contour, nodes: NDArray[np.intp]) -> occ.Face:
+def face(contour: Outline, nodes: NDArray[np.intp]) -> occ.Face:
     """Build the OCC face whose named spline edges join the chosen contour points.
 
     One edge per mesh edge puts the mesh nodes on the outline's points.
@@ -34,7 +34,7 @@ def face(contour: Contour, nodes: NDArray[np.intp]) -> occ.Face:
     return result
 
 
-def _edge(contour: Contour, span: NDArray[np.intp]) -> occ.Edge:
+def _edge(contour: Outline, span: NDArray[np.intp]) -> occ.Edge:
     """The outline's spline over one or more segments: exact for one, through all points and tangents for more."""
     control = contour.bezier[span]
     if len(span) == 1:
@@ -44,7 +44,7 @@ def _edge(contour: Contour, span: NDArray[np.intp]) -> occ.Edge:
     return occ.SplineInterpolation(points, tangents={i: occ.Vec(*d, 0) for i, d in enumerate(slope)})
 
 
-def mesh(contour: Contour, nodes: NDArray[np.intp], field: SizeField) -> ng.Mesh:
+def mesh(contour: Outline, nodes: NDArray[np.intp], field: SizeField) -> ng.Mesh:
     """Mesh the section with curved triangles (geometry of order 2).
 
     Raises

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class SizeField:
         return h
 
 
-def fitted(contour: Contour, field: SizeField, *, on_chord: bool = False) -> Contour:
+def fitted(contour: Outline, field: SizeField, *, on_chord: bool = False) -> Outline:
     """Return the outline with points inserted until no segment is longer than 1.3 h.
 
     Segments are halved on the spline, or on the polygon (``on_chord``), whose area then stays exactly the same.
@@ -65,7 +65,7 @@ def fitted(contour: Contour, field: SizeField, *, on_chord: bool = False) -> Con
         contour = contour.inserted(middle[long], on_chord=on_chord)
 
 
-def smoothed(contour: Contour, edges: tuple[str, ...], longest: float) -> Contour:
+def smoothed(contour: Outline, edges: tuple[str, ...], longest: float) -> Outline:
     """Return the outline with points inserted on the spline where the named edges are curved.
 
     After that no curved segment there is longer than ``longest`` [mm]: what wears must not be refined later,
@@ -74,12 +74,12 @@ def smoothed(contour: Contour, edges: tuple[str, ...], longest: float) -> Contou
     return _halved(contour, edges, longest, curved=True)
 
 
-def divided(contour: Contour, edges: tuple[str, ...], longest: float) -> Contour:
+def divided(contour: Outline, edges: tuple[str, ...], longest: float) -> Outline:
     """Return the outline with points inserted on the straight segments of the named edges longer than ``longest``."""
     return _halved(contour, edges, longest, curved=False)
 
 
-def _halved(contour: Contour, edges: tuple[str, ...], longest: float, *, curved: bool) -> Contour:
+def _halved(contour: Outline, edges: tuple[str, ...], longest: float, *, curved: bool) -> Outline:
     while True:
         middle = np.arange(len(contour)) + 0.5
         sagitta = np.linalg.norm(contour.at(middle) - contour.on_polygon(middle), axis=1)
@@ -90,7 +90,7 @@ def _halved(contour: Contour, edges: tuple[str, ...], longest: float, *, curved:
         contour = contour.inserted(middle[split])
 
 
-def mesh_nodes(contour: Contour, field: SizeField) -> NDArray[np.intp]:
+def mesh_nodes(contour: Outline, field: SizeField) -> NDArray[np.intp]:
     """Choose the contour points that become mesh nodes, about h apart.
 
     Between two nodes the outline turns by no more than the field allows. Corners and changes of name are always nodes.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ngwear.laws import Curve
-from ngwear.scene.scene import ContactSpec, Scene
+from ngwear.scene.scene import Contact, Scene
 
 CHANGE, MOST_CHANGE = 5.0, 0.5  # times the wear error: of a law in a jump, over its highest value in the scene
 LAG = 0.5  # times the wear error: of the friction that a jump uses behind its mean over the jump
@@ -30,7 +30,7 @@ def steady_cycles(scene: Scene, done: int, most: int) -> int:
     return allowed
 
 
-def friction_range(scene: Scene, contact: ContactSpec) -> tuple[float, float]:
+def friction_range(scene: Scene, contact: Contact) -> tuple[float, float]:
     """Lowest and highest friction coefficient that the scene meets [-], under the lightest pressure."""
     last = scene.program.slid(scene.program.strokes)
     found = [curve.extremes(0.0, last) for curve in _friction(scene, contact)]
@@ -52,7 +52,7 @@ def _is_steady(scene: Scene, start: float, end: float) -> bool:
     return True
 
 
-def _friction(scene: Scene, contact: ContactSpec) -> Iterator[Curve]:
+def _friction(scene: Scene, contact: Contact) -> Iterator[Curve]:
     """The contact's friction over distance, at the speed of each kind of stroke."""
     law = contact.friction_law
     for speed in {stroke.speed for stroke in scene.program.cycle} if law is not None else ():

@@ -14,7 +14,7 @@ from ngwear.errors import GeometryError, MeshError, SceneError, require
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.layers import layered
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import STEEPEST
 from ngwear.laws.damage import Stresses
 from ngwear.loop.remeshing import adopt
@@ -130,7 +130,7 @@ def begin(state: State) -> None:
     )
 
 
-def tear(state: State, outline: Contour, repeats: int) -> bool:
+def tear(state: State, outline: Outline, repeats: int) -> bool:
     """Deactivate what the present state tears, from the outline as it was before the solve; return whether any.
 
     Raises
@@ -190,7 +190,7 @@ def go_on(state: State, cells: Cells) -> None:
     adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
 
 
-def follow(state: State, outline: Contour, points: Array) -> None:
+def follow(state: State, outline: Outline, points: Array) -> None:
     """Let the surface nodes go from the outline to worn places, shape (n, 2), and filter what is then too distorted.
 
     Raises

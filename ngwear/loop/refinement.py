@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import SizeField, smoothed
 from ngwear.loop.stage import Stage
-from ngwear.scene.scene import ContactSpec, Scene
+from ngwear.scene.scene import Contact, Scene
 
 Array = NDArray[np.float64]
 
@@ -118,7 +118,7 @@ def _per_radius(across: float | None) -> float:
     return 2.0 if across is None else float(np.clip(across / 2 - 1.0, 1.0, 2.0))
 
 
-def _beside(contour: Contour, t: Array, apart: float) -> Array:
+def _beside(contour: Outline, t: Array, apart: float) -> Array:
     """Places of the outline at parameters t, and so far to either side [mm], shape (3 len(t), 2)."""
     points = np.arange(len(contour) + 1)
     ways = np.concatenate([[0.0], np.cumsum(contour.lengths)])
@@ -163,8 +163,8 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
     return points.centres, np.maximum(edge, stage.scene.accuracy.patch)
 
 
-def _spanned(contour: Contour, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Contour points at marked nodes, and between them where a mesh edge joins two."""
+def _spanned(contour: Outline, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Outline points at marked nodes, and between them where a mesh edge joins two."""
     n = len(contour)
     ask = np.zeros(n, dtype=bool)
     ask[np.rint(profile.t[near]).astype(int) % n] = True
@@ -175,7 +175,7 @@ def _spanned(contour: Contour, profile: ContactProfile, near: NDArray[np.bool_])
     return ask
 
 
-def unworn_outline(scene: Scene) -> Contour:
+def unworn_outline(scene: Scene) -> Outline:
     """The scene's outline with points as near to each other as elements of its patch ask for."""
     return smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch)
 
@@ -199,7 +199,7 @@ def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
     return SizeField(seeds, sizes, accuracy.coarse, grading, turn=0.5, per_radius=_per_radius(across))
 
 
-def _nearest_place(scene: Scene, spec: ContactSpec) -> Array:
+def _nearest_place(scene: Scene, spec: Contact) -> Array:
     """Where the surface comes nearest to its edges, shape (1, 2)."""
     contour = scene.contour
     t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.state_transfer import carry
 from ngwear.errors import MeshError
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import tidied
 from ngwear.loop.element_sizes import chosen
 from ngwear.loop.refinement import outgrown, unworn_outline, wanted_size
@@ -52,7 +52,7 @@ def still_ahead(state: State) -> dict[str, float]:
     return {} if state.across is None else {"left": left}
 
 
-def remesh(state: State, contour: Contour | None = None) -> None:
+def remesh(state: State, contour: Outline | None = None) -> None:
     """Mesh the present (or the given) outline anew and carry the state over, in place.
 
     The carried vectors are first guesses, not equilibria. Raises MeshError if the mesh fails its gates; the
@@ -91,7 +91,7 @@ def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
 class _Moved:
     """Values at the points of one outline, their last axis, at those of another with almost the same shape."""
 
-    def __init__(self, before: Contour, after: Contour) -> None:
+    def __init__(self, before: Outline, after: Outline) -> None:
         self._before, self._after = before, after
 
     @cached_property

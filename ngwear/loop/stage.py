@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.scene.program import Stroke
-from ngwear.scene.scene import ContactSpec, Scene
+from ngwear.scene.scene import Contact, Scene
 from ngwear.surfaces import WornProfile
 
 if TYPE_CHECKING:  # an effect that the scene does not list is not even imported
@@ -33,7 +33,7 @@ class Stage:
 
     Attributes
     ----------
-    contacts : dict of str to Contact
+    contacts : dict of str to OutlineContact
     frictions : dict of str to Friction
     fluid : FluidPressure or None
     memory : StrokeMemory or None
@@ -48,7 +48,7 @@ class Stage:
         modulus = rubber.shear_modulus
         self.elasticity = Elasticity(rubber, order=scene.accuracy.order)
         self.contacts = {
-            spec.name: Contact(
+            spec.name: OutlineContact(
                 spec.name,
                 spec.edges,
                 spec.surface,
@@ -88,11 +88,11 @@ class Stage:
             body,
             Axisymmetric() if scene.axisymmetric else PlaneStrain(),
             terms,
-            supports=[Support(s.edges, s.x, s.y) for s in scene.supports],
+            supports=[FixedEdges(s.edges, s.x, s.y) for s in scene.supports],
             order=scene.accuracy.order,
         )
 
-    def _friction(self, spec: ContactSpec) -> Friction:
+    def _friction(self, spec: Contact) -> Friction:
         """The friction of a contact that has a law of it."""
         scene, contact = self.scene, self.contacts[spec.name]
         speed = scene.program.cycle[0].speed
@@ -190,7 +190,7 @@ class Stage:
             loads |= dict.fromkeys(self.fluid.loads, 0.0)
         return loads
 
-    def _clearance(self, spec: ContactSpec) -> tuple[float, int]:
+    def _clearance(self, spec: Contact) -> tuple[float, int]:
         """Smallest gap over the contact's edges [mm] and the contour point where it is."""
         contour = self.body.contour
         mine = contour.on(spec.edges)
@@ -199,7 +199,7 @@ class Stage:
         worst = int(np.argmin(gap))
         return float(gap[worst]), int(np.flatnonzero(touching)[worst])
 
-    def _travel_to_touch(self, spec: ContactSpec) -> float:
+    def _travel_to_touch(self, spec: Contact) -> float:
         """Travel along the approach at which a surface under force bites a little and so meets a stiffness [mm]."""
         ax, ay = spec.surface.approach
         contour = self.body.contour
@@ -225,7 +225,7 @@ class Stage:
                 break
         raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "does not meet its edges along its approach")
 
-    def _overlap(self, spec: ContactSpec) -> float:
+    def _overlap(self, spec: Contact) -> float:
         """How far the surface has to be drawn back along its approach to free the part [mm]."""
         gap, _ = self._clearance(spec)
         if gap >= 0:

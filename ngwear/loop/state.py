@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.equilibrium.stepping import Work
 from ngwear.geometry.cells import Cells, Fate
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.stage import Stage
 from ngwear.surfaces import WornProfile
 from ngwear.wear.jump_control import JumpControl
@@ -185,7 +185,7 @@ class State:
         self.stage.body.move_to(contour)
 
     @property
-    def contour(self) -> Contour:
+    def contour(self) -> Outline:
         """The outline as it is now."""
         return self.stage.body.contour
 
@@ -224,7 +224,7 @@ class StrokeReport:
         Whether the fluid meets no contact.
     leak_pressure : tuple of float and str, or None
         Fluid pressure that the contacts hold [MPa], and the edge that would give way first; None if not asked for.
-    contour : Contour
+    contour : Outline
         Outline after the stroke's wear.
     ledger : Ledger
         Book after the stroke's wear.
@@ -247,7 +247,7 @@ class StrokeReport:
     counters: dict[str, WornProfile]
     leaks: bool
     leak_pressure: tuple[float, str] | None
-    contour: Contour
+    contour: Outline
     ledger: Ledger
     cells: Cells | None = None
     loaded: dict[str, Array] = field(default_factory=dict)

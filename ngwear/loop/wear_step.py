@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import GeometryError, MeshError
-from ngwear.geometry.outline import Contour, polygon_area, polygon_moment
+from ngwear.geometry.outline import Outline, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.state import State
-from ngwear.scene.scene import ContactSpec
+from ngwear.scene.scene import Contact
 from ngwear.wear.archard import worn_share
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
 from ngwear.wear.sliding_distance import Strokes
@@ -40,7 +40,7 @@ class Wearing:
 
     Attributes
     ----------
-    outline : Contour
+    outline : Outline
         Before the wear.
     own : array, shape (contacts,)
         Weight of the pressure at the step's end, 1 - a [-].
@@ -56,7 +56,7 @@ class Wearing:
     state: State
     index: int
     sliding: Strokes
-    outline: Contour
+    outline: Outline
     own: Array
     last: Array
     ahead: Array
@@ -89,7 +89,7 @@ class Wearing:
         return wearing
 
     @property
-    def halfway(self) -> Contour:
+    def halfway(self) -> Outline:
         """Between the outline and the foreseen one, where a depth sweeps the area of its length times itself.
 
         By the lengths of the outline before, convex places would wear too deep; by those after, ripples would grow.
@@ -146,7 +146,7 @@ class Wearing:
                 profile, rate = self._rate(spec, {})
                 phase.pressure[k] = worn_share(self.outline, profile, rate * profile.weight) / width
 
-    def _rate(self, spec: ContactSpec, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
+    def _rate(self, spec: Contact, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
         """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-].
 
         Explicit steps are the classic ones, by lumped pressures: the sharper ones would break up at smaller steps.
@@ -253,7 +253,7 @@ class Wearing:
         return known
 
 
-def _follow(state: State, outline: Contour, worn: Contour) -> None:
+def _follow(state: State, outline: Outline, worn: Outline) -> None:
     """Let the mesh follow to a worn outline; make a new mesh where it cannot, unless the scene forbids it."""
     body, why = state.stage.body, "the outline needs other points"
     if len(worn) == len(outline):

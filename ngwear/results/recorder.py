@@ -16,7 +16,7 @@ from ngwear import __version__
 from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
 from ngwear.geometry.cells import Fate
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import divided
 from ngwear.results.result_file import Snapshot
 from ngwear.scene.scene import Scene
@@ -40,7 +40,7 @@ TORN = "area lost in all by tearing [-]"  # what of its error is known separatel
 BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
 
 
-def depths(before: Contour, after: Contour) -> Array:
+def depths(before: Outline, after: Outline) -> Array:
     """Distance of each point of the unworn outline from the worn one [mm], shape (n,)."""
     from shapely import STRtree, linestrings, points
 
@@ -49,7 +49,7 @@ def depths(before: Contour, after: Contour) -> Array:
     return found
 
 
-def measured_at(scene: Scene) -> Contour:
+def measured_at(scene: Scene) -> Outline:
     """The scene's outline with points all along its straight worn edges: a depth is known where there is one."""
     longest = float(np.ptp(scene.contour.points, axis=0).max()) / POINTS_ALONG
     return divided(scene.contour, scene.worn_edges, longest)
@@ -67,7 +67,7 @@ class Recorder:
     snapshots: list[Snapshot] = field(default_factory=list)
     wall: float = 0.0
     cpu: float = 0.0
-    unworn: Contour | None = None
+    unworn: Outline | None = None
     unworn_area: float = 0.0
 
     def add(self, state: Any, *, wall: float) -> None:

@@ -9,7 +9,7 @@ from ngwear.errors import require
 
 
 def refuse_in_contact(contact: Any) -> None:
-    """SceneError for a ``ContactSpec`` (which calls this as it is built) whose effects contradict each other."""
+    """SceneError for a ``Contact`` (which calls this as it is built) whose effects contradict each other."""
     place, law, counter = f"contact '{contact.name}'", contact.friction_law, contact.counter_wear_rate
     still = "a surface that stands still (slides = false)"
 

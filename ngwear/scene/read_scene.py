@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import SceneError
-from ngwear.geometry.outline_files import read_contour
+from ngwear.geometry.outline_files import read_outline
 from ngwear.scene.pin_scene import KIND as PIN
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.program import Program, Stroke
@@ -16,7 +16,7 @@ from ngwear.scene.read_deactivation import read_deactivation
 from ngwear.scene.read_laws import read_friction, read_wear_law, read_wear_rate
 from ngwear.scene.read_material import read_arms, read_material
 from ngwear.scene.read_pin import pin_scene
-from ngwear.scene.scene import Accuracy, ContactSpec, FluidSpec, Save, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Fluid, Save, Scene, Support, Wear
 from ngwear.scene.toml_values import coordinate, get, known, record, subtable, tables, typed
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
@@ -76,12 +76,12 @@ def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
     return Scene(
         name=name,
         axisymmetric=KINDS[data["scene"]["kind"]],
-        contour=read_contour(folder / str(get(outline, "contour", "file"))),
+        contour=read_outline(folder / str(get(outline, "contour", "file"))),
         material=read_material(subtable(data, "material")),
         prony=read_arms(data["material"]["prony"]) if "prony" in data["material"] else None,
         contacts=tuple(_contact(i, table, folder) for i, table in enumerate(tables(data, "contact"))),
-        fluid=record(FluidSpec, "fluid", data["fluid"]) if "fluid" in data else None,
-        supports=tuple(record(SupportSpec, f"support[{i}]", t) for i, t in enumerate(tables(data, "support"))),
+        fluid=record(Fluid, "fluid", data["fluid"]) if "fluid" in data else None,
+        supports=tuple(record(Support, f"support[{i}]", t) for i, t in enumerate(tables(data, "support"))),
         program=_program(subtable(data, "program")),
         accuracy=_accuracy(data.get("accuracy", {})),
         wear=record(Wear, "wear", data.get("wear", {})),
@@ -100,7 +100,7 @@ def _accuracy(table: Any) -> Accuracy:
     return Accuracy.preset(typed("accuracy.preset", table["preset"], "str"))
 
 
-def _contact(number: int, table: dict[str, Any], folder: Path) -> ContactSpec:
+def _contact(number: int, table: dict[str, Any], folder: Path) -> Contact:
     place = f"contact[{number}]"
     if not isinstance(table, dict):
         raise SceneError(place, table, "must be a table")
@@ -114,7 +114,7 @@ def _contact(number: int, table: dict[str, Any], folder: Path) -> ContactSpec:
     for key, read in laws:
         if key in values:
             values[key] = read(f"{place}.{key}", values[key], folder)
-    return record(ContactSpec, place, values)
+    return record(Contact, place, values)
 
 
 def _surface(place: str, table: dict[str, Any]) -> RigidSurface:

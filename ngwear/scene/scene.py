@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from ngwear.errors import require
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.laws import FrictionLaw, WearLaw, WearRate, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.scene.accuracy import Accuracy
@@ -17,7 +17,7 @@ from ngwear.surfaces import RigidSurface
 
 
 @dataclass(frozen=True, kw_only=True)
-class ContactSpec:
+class Contact:
     """A rigid surface and the edges that may touch it.
 
     Parameters
@@ -90,7 +90,7 @@ class ContactSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class FluidSpec:
+class Fluid:
     """Where a sealed fluid may go: ``edges`` in one piece, ``inlet`` always wetted.
 
     ``leak_pressure`` asks what fluid pressure the contacts hold; meshes are then fine where the fluid meets them, too:
@@ -103,7 +103,7 @@ class FluidSpec:
 
 
 @dataclass(frozen=True, kw_only=True)
-class SupportSpec:
+class Support:
     """Edges held at their place in x, y or both."""
 
     edges: tuple[str, ...]
@@ -179,14 +179,14 @@ class Scene:
     """
 
     name: str
-    contour: Contour
+    contour: Outline
     material: Hyperelastic
-    contacts: tuple[ContactSpec, ...]
+    contacts: tuple[Contact, ...]
     program: Program
     prony: PronySeries | None = None
     axisymmetric: bool = False
-    fluid: FluidSpec | None = None
-    supports: tuple[SupportSpec, ...] = ()
+    fluid: Fluid | None = None
+    supports: tuple[Support, ...] = ()
     accuracy: Accuracy = field(default_factory=Accuracy)
     wear: Wear = field(default_factory=Wear)
     deactivation: Deactivation | None = None
@@ -217,7 +217,7 @@ class Scene:
         for contact in self.contacts:
             self._check_side(contact)
 
-    def _check_side(self, contact: ContactSpec) -> None:
+    def _check_side(self, contact: Contact) -> None:
         """A rigid body that swallows the part, or that it can never reach, is on the wrong side."""
         from shapely import Polygon
 
@@ -257,15 +257,15 @@ class Scene:
         folding = self.folding
         return folding.kept if folding is not None and folding.kept.times else None
 
-    def may_stick(self, contact: ContactSpec) -> bool:
+    def may_stick(self, contact: Contact) -> bool:
         """Whether a contact's friction is solved as stick and slip; see ``why_it_may_stick``."""
         return self._sticking(contact)[0]
 
-    def why_it_may_stick(self, contact: ContactSpec) -> str:
+    def why_it_may_stick(self, contact: Contact) -> str:
         """Reason in words why a contact's friction is solved as stick and slip, or as full sliding."""
         return self._sticking(contact)[1]
 
-    def _sticking(self, contact: ContactSpec) -> tuple[bool, str]:
+    def _sticking(self, contact: Contact) -> tuple[bool, str]:
         """At a reversal a surface first carries the part along, at most by ``2 mu p / G`` of its height; p about G."""
         if contact.friction_law is None:
             return False, "no friction"
@@ -280,7 +280,7 @@ class Scene:
         told = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
         return shortest < carried, told
 
-    def elastic_slip(self, contact: ContactSpec) -> float:
+    def elastic_slip(self, contact: Contact) -> float:
         """How far at most a surface carries the part along before it slips [mm]: ``2 mu`` of its height, p about G."""
         law = contact.friction_law
         if law is None:
@@ -300,6 +300,6 @@ class Scene:
         return tuple(e for c in self.contacts if c.wears for e in c.edges)
 
     @property
-    def followed(self) -> tuple[ContactSpec, ...]:
+    def followed(self) -> tuple[Contact, ...]:
         """Contacts that the mesh follows."""
         return tuple(c for c in self.contacts if c.refine or c.wears)

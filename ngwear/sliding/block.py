@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.memory import Memory
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.errors import ConvergenceError
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import SizeField
 from ngwear.materials import Hyperelastic
 from ngwear.surfaces import Cylinder
@@ -31,11 +31,11 @@ class Block:
     Attributes
     ----------
     problem : Problem
-    contact : Contact
+    contact : OutlineContact
     """
 
     problem: Problem
-    contact: Contact
+    contact: OutlineContact
 
     @classmethod
     def under(
@@ -44,10 +44,10 @@ class Block:
         """Put a cylinder above x = 0 on the top of a rectangular body, touching, with its load [N/mm]."""
         depth = float(np.ptp(body.contour.points[:, 1]))
         cylinder = Cylinder(centre=(0.0, depth + radius), radius=radius)
-        contact = Contact(
+        contact = OutlineContact(
             "cylinder", ("top",), cylinder, force_controlled=True, slides=slides, modulus=material.shear_modulus
         )
-        supports = [Support(("bottom",)), Support(("left", "right"), y=False)]
+        supports = [FixedEdges(("bottom",)), FixedEdges(("left", "right"), y=False)]
         problem = Problem(body, PlaneStrain(), [Elasticity(material), memory, contact], supports=supports)
         problem.set_loads({FORCE: load})
         return cls(problem, contact)
@@ -78,7 +78,7 @@ class Block:
 
 def meshed_block(x: tuple[float, float], depth: float, places: Array, sizes: Array, *, grading: float) -> Body:
     """Rectangle from y = 0 to ``depth``, with elements of the given sizes at places of shape (n, 2) [mm]."""
-    return Body(Contour.rectangle(x, (0.0, depth)), SizeField(places, sizes, depth / 4, grading=grading))
+    return Body(Outline.rectangle(x, (0.0, depth)), SizeField(places, sizes, depth / 4, grading=grading))
 
 
 def march(start: float, stop: float, size: Callable[[float], float]) -> Array:

@@ -16,7 +16,7 @@ from ngwear.effects.contact_patch import Faces, PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.steady_memory import SteadyMemory
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.state_transfer import carry_solid
 from ngwear.equilibrium.steady_sliding import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
@@ -112,7 +112,7 @@ class PinStage:
         if pin.series is not None:
             self.memory = SteadyMemory(pin.material, pin.series, self._grid(disc))
             terms.append(self.memory)
-        self.problem = Problem(self.body, Solid(), terms, supports=[Support(("bottom",))])
+        self.problem = Problem(self.body, Solid(), terms, supports=[FixedEdges(("bottom",))])
 
     def _grid(self, disc: tuple[float, float, float]) -> StreamGrid:
         x, y, radius = disc

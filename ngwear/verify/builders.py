@@ -8,11 +8,11 @@ from ngsolve.meshes import MakeStructured2DMesh
 
 from ngwear.geometry.body import Body
 from ngwear.geometry.meshed import Meshed
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField
 
 
-def quarter_ring(inner: float, outer: float) -> Contour:
+def quarter_ring(inner: float, outer: float) -> Outline:
     """Quarter of a ring around the origin with the edges bore and outside, and the cuts along x and along y."""
     n = 60  # segments an arc: the spline is then within 3e-8 radii of the circle
     angle = np.linspace(0, np.pi / 2, n + 1)
@@ -20,11 +20,11 @@ def quarter_ring(inner: float, outer: float) -> Contour:
     corners = np.zeros(2 * n + 2, dtype=bool)
     corners[[0, n, n + 1, -1]] = True
     names = ("outside",) * n + ("along y",) + ("bore",) * n + ("along x",)
-    return Contour(np.vstack([outer * arc, inner * arc[::-1]]), names, corners)
+    return Outline(np.vstack([outer * arc, inner * arc[::-1]]), names, corners)
 
 
 def meshed(
-    contour: Contour,
+    contour: Outline,
     coarse: float,
     seeds: Array | None = None,
     size: Array | float = 0.0,

@@ -18,7 +18,7 @@ from ngwear.loop.state import Phase, State
 from ngwear.materials import Hyperelastic
 from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
 from ngwear.surfaces import Plane
 from ngwear.wear.jump_control import JumpControl
 
@@ -56,7 +56,7 @@ def grid(x: Array, y: Array, present: Mask | None = None) -> Cells:
 
 
 def held(
-    cells: Cells, material: Hyperelastic, supports: tuple[SupportSpec, ...], damage: Criterion, edge: str = "top"
+    cells: Cells, material: Hyperelastic, supports: tuple[Support, ...], damage: Criterion, edge: str = "top"
 ) -> State:
     """State, without load, of a scene that is set up on given elements; a surface that wears is far away from ``edge``.
 
@@ -67,7 +67,7 @@ def held(
         name="elements",
         contour=cells.contour,
         material=material,
-        contacts=(ContactSpec(name="far away", edges=(edge,), surface=far, specific_wear_rate=1e-9),),
+        contacts=(Contact(name="far away", edges=(edge,), surface=far, specific_wear_rate=1e-9),),
         supports=supports,
         program=Program(cycle=(Stroke(name="pull", travel=1.0),), strokes=1),
         accuracy=Accuracy(patch=1e-3, mounting=1.0, coarse=1.0),

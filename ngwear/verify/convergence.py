@@ -28,7 +28,7 @@ from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.newton import NewtonOptions
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.fields.kinematics import PlaneStrain, Solid
 from ngwear.geometry.meshed import Meshed
@@ -56,7 +56,7 @@ def ring_errors(size: float, order: int = 2) -> tuple[float, float]:
     body = meshed(quarter_ring(INNER, OUTER), size)
     pressure = expanding_pressure(RUBBER.shear_modulus, INNER, OUTER, EXPANDED)
     fluid = FluidPressure(("bore",), ("bore",), ())
-    supports = [Support(("along x",), x=False), Support(("along y",), y=False)]
+    supports = [FixedEdges(("along x",), x=False), FixedEdges(("along y",), y=False)]
     problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER, order=order), fluid], supports=supports, order=order)
     advance(problem, {"fluid pressure [MPa]": pressure}, StepOptions(newton=NewtonOptions(tolerance=1e-9)))
     field, exact, slope = problem.fields[DISPLACEMENT], _expanded(), _expanded_gradient()
@@ -65,7 +65,7 @@ def ring_errors(size: float, order: int = 2) -> tuple[float, float]:
 
 def cut_error(body: Meshed) -> float:
     """The same for a part of the ring whose outline, all of it, is moved as there."""
-    problem = Problem(body, PlaneStrain(), [Elasticity(TWISTED)], supports=[Support(body.region_names)])
+    problem = Problem(body, PlaneStrain(), [Elasticity(TWISTED)], supports=[FixedEdges(body.region_names)])
     field, exact = problem.fields[DISPLACEMENT], _expanded()
     places = body.node_places()
     body.set_nodal(field, _growth((places**2).sum(axis=1, keepdims=True)) * places)
@@ -78,7 +78,7 @@ def torsion_error(size: float) -> float:
     nowhere = np.empty((0, 3))
     sheet = {"thickness": 2.0, "track_radius": math.inf, "reach": 1.0, "beside": 1.0}
     body = Sheet(**sheet, seeds=nowhere, sizes=nowhere[:, 0], coarse=size)
-    supports = [Support(("bottom", "top", "side"))]
+    supports = [FixedEdges(("bottom", "top", "side"))]
     problem = Problem(body, Solid(), [Elasticity(TWISTED)], supports=supports)
     angle = TWIST * ng.z
     turned = (ng.x * ng.cos(angle) - ng.y * ng.sin(angle), ng.x * ng.sin(angle) + ng.y * ng.cos(angle))

@@ -23,14 +23,14 @@ import math
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.stick_slip import StickSlip
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder, WornProfile
 from ngwear.verify.base import Check, Stopwatch
@@ -51,14 +51,14 @@ WAY, STEPS = 0.006, 15  # of the resolved stick and slip
 SLIDE = "cylinder slide [mm]"
 
 
-def pressed(reach: float, *, sticks: bool) -> tuple[Problem, Contact, FullSliding | StickSlip, Elasticity]:
+def pressed(reach: float, *, sticks: bool) -> tuple[Problem, OutlineContact, FullSliding | StickSlip, Elasticity]:
     """The problem under its normal load."""
     seeds = np.arange(-reach, reach + SIZE / 2, SIZE)
     body = meshed(
-        Contour.rectangle((-BLOCK, BLOCK), (0.0, BLOCK)), BLOCK / 4, np.stack([seeds, 0 * seeds + BLOCK], axis=1), SIZE
+        Outline.rectangle((-BLOCK, BLOCK), (0.0, BLOCK)), BLOCK / 4, np.stack([seeds, 0 * seeds + BLOCK], axis=1), SIZE
     )
     cylinder = Cylinder(centre=(0.0, BLOCK + RADIUS), radius=RADIUS)
-    contact = Contact(
+    contact = OutlineContact(
         "cylinder",
         ("top",),
         cylinder,
@@ -69,7 +69,7 @@ def pressed(reach: float, *, sticks: bool) -> tuple[Problem, Contact, FullSlidin
     )
     friction = StickSlip(contact, MU) if sticks else FullSliding(contact, MU)
     elasticity = Elasticity(MATERIAL)
-    problem = Problem(body, PlaneStrain(), [elasticity, contact, friction], supports=[Support(("bottom",))])
+    problem = Problem(body, PlaneStrain(), [elasticity, contact, friction], supports=[FixedEdges(("bottom",))])
     squared = 4 * LOAD * RADIUS / (math.pi * MATERIAL.plane_strain_modulus)  # Hertz' half width
     problem.fields[contact.travel_name].vec[0] = squared / (2 * RADIUS)
     if not sticks:

@@ -17,13 +17,13 @@ import math
 
 import numpy as np
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.newton import NewtonOptions
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
@@ -49,11 +49,11 @@ def _pressed(order: int) -> list[Check]:
 
     at = np.arange(0.0, 1.1 * a, size)
     seeds = np.stack([at, np.full(len(at), BLOCK)], axis=1)
-    body = meshed(Contour.rectangle((0.0, BLOCK), (0.0, BLOCK)), COARSE, seeds, size, grading)
+    body = meshed(Outline.rectangle((0.0, BLOCK), (0.0, BLOCK)), COARSE, seeds, size, grading)
     cylinder = Cylinder(centre=(0.0, BLOCK + RADIUS), radius=RADIUS)
     how = {"modulus": MATERIAL.shear_modulus, "order": order}
-    contact = Contact("cylinder", ("top",), cylinder, force_controlled=True, **how)
-    supports = [Support(("bottom",)), Support(("left",), y=False)]
+    contact = OutlineContact("cylinder", ("top",), cylinder, force_controlled=True, **how)
+    supports = [FixedEdges(("bottom",)), FixedEdges(("left",), y=False)]
     terms = [Elasticity(MATERIAL, order=order), contact]
     problem = Problem(body, PlaneStrain(), terms, supports=supports, order=order)
     problem.fields[contact.travel_name].vec[0] = a * a / (2 * RADIUS)

@@ -12,11 +12,11 @@ where the fluid's pressure surpasses it) that is what the seal holds in each str
 
 from __future__ import annotations
 
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, FluidSpec, Scene, SupportSpec
+from ngwear.scene.scene import Accuracy, Contact, Fluid, Scene, Support
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 
@@ -33,10 +33,10 @@ def scene() -> Scene:
     plates = {"bottom": lower, "top": upper}
     return Scene(
         name="block in a groove",
-        contour=Contour.rectangle((0.0, LENGTH), (0.0, HEIGHT)),
+        contour=Outline.rectangle((0.0, LENGTH), (0.0, HEIGHT)),
         material=RUBBER,
         contacts=tuple(
-            ContactSpec(
+            Contact(
                 name=f"{side} plate",
                 edges=(side,),
                 surface=Plane(point=(0.0, y), normal_vector=(0.0, up)),
@@ -44,8 +44,8 @@ def scene() -> Scene:
             )
             for side, (y, up) in plates.items()
         ),
-        supports=(SupportSpec(edges=("left",), y=False),),
-        fluid=FluidSpec(edges=("bottom", "right", "top"), inlet=("right",), leak_pressure=True),
+        supports=(Support(edges=("left",), y=False),),
+        fluid=Fluid(edges=("bottom", "right", "top"), inlet=("right",), leak_pressure=True),
         program=Program(
             cycle=tuple(Stroke(name=f"{p:g} MPa", travel=1.0, pressure=p) for p in PRESSURES), strokes=len(PRESSURES)
         ),

@@ -21,7 +21,7 @@ from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.newton import NewtonOptions
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.meshed import Meshed
@@ -43,7 +43,7 @@ def displacement_error(ratio: float, order: int = 2) -> float:
     a, b = INNER, OUTER
     factor, _ = _lame(ratio)
     fluid = FluidPressure(("bore",), ("bore",), ())
-    supports = [Support(("along x",), x=False), Support(("along y",), y=False)]
+    supports = [FixedEdges(("along x",), x=False), FixedEdges(("along y",), y=False)]
     body, terms = meshed(quarter_ring(a, b), SIZE), [_elasticity(ratio, order), fluid]
     problem = Problem(body, PlaneStrain(), terms, supports=supports, order=order)
     advance(problem, {"fluid pressure [MPa]": factor * (b**2 - a**2) / a**2}, TIGHT)
@@ -52,7 +52,7 @@ def displacement_error(ratio: float, order: int = 2) -> float:
 
 def cut_error(ratio: float, body: Meshed) -> float:
     """The same for a part of the ring whose outline, all of it, is moved as there."""
-    problem = Problem(body, PlaneStrain(), [_elasticity(ratio)], supports=[Support(body.region_names)])
+    problem = Problem(body, PlaneStrain(), [_elasticity(ratio)], supports=[FixedEdges(body.region_names)])
     _, exact = _lame(ratio)
     problem.fields[DISPLACEMENT].Set(exact, definedon=body.boundary(body.region_names))
     relax(problem, TIGHT)

@@ -33,7 +33,7 @@ from ngwear.loop.lost_elements import lose
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
-from ngwear.scene.scene import ContactSpec, Scene, SupportSpec
+from ngwear.scene.scene import Contact, Scene, Support
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.cell_blocks import TIGHT, grid, held
@@ -119,10 +119,10 @@ def anew(cells: Cells) -> Cells:
 def pressed(cells: Cells) -> State:
     """Under the plane that presses and slides; what is below the height of the block touches it, too."""
     plane = Plane(point=(0.0, 1.0), normal_vector=(0.0, -1.0))
-    spec = ContactSpec(
+    spec = Contact(
         name="plane", edges=("top",), surface=plane, force=FORCE, friction=0.3, specific_wear_rate=1e-9, sticks=False
     )
-    state = held(cells, RUBBER, (SupportSpec(edges=("bottom",)),), MaximumPrincipalStress(critical=1e9))
+    state = held(cells, RUBBER, (Support(edges=("bottom",)),), MaximumPrincipalStress(critical=1e9))
     scene: Scene = replace(state.stage.scene, contacts=(spec,))
     state.stage = Stage(scene, ElementBody(cells))
     state.phases[0].vector = state.stage.problem.state.vec.FV().NumPy().copy()

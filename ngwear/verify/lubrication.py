@@ -20,12 +20,12 @@ from typing import Any
 
 import numpy as np
 
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.laws import FrictionLaw, Lubrication, WearRate
 from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 
@@ -55,15 +55,15 @@ class Square(FrictionLaw):
 def scene(friction: FrictionLaw, rate: WearRate | float) -> Scene:
     """The block with its laws; jumps as long as the laws allow."""
     counter = Plane(point=(0.0, HEIGHT), normal_vector=(0.0, -1.0))
-    plane = ContactSpec(
+    plane = Contact(
         name="plane", edges=("top",), surface=counter, force=FORCE, friction=friction, specific_wear_rate=rate
     )
     return Scene(
         name=CASE,
-        contour=Contour.rectangle((-HALF, HALF), (0.0, HEIGHT)),
+        contour=Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)),
         material=NeoHooke.from_young(1.0, 0.4995),
         contacts=(plane,),
-        supports=(SupportSpec(edges=("bottom",)),),
+        supports=(Support(edges=("bottom",)),),
         program=Program(cycle=CYCLE, strokes=round(2 * END / 100)),
         accuracy=Accuracy(patch=PATCH, coarse=0.3, mounting=PATCH, wear_error=0.02, longest_jump=1.0),
     )

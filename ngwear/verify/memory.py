@@ -23,14 +23,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.energy_balance import EnergyBook
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke, PronySeries
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
@@ -47,14 +47,14 @@ def arms(count: int) -> PronySeries:
     return PronySeries((0.5,) * count, tuple(10.0 ** (k - count // 2) for k in range(count)))
 
 
-def block(series: PronySeries, *, force_controlled: bool) -> tuple[Problem, Contact]:
+def block(series: PronySeries, *, force_controlled: bool) -> tuple[Problem, OutlineContact]:
     """Block of 1 x 1 mm under a plate."""
-    body = meshed(Contour.rectangle((0.0, 1.0), (0.0, 1.0)), 1.0)
+    body = meshed(Outline.rectangle((0.0, 1.0), (0.0, 1.0)), 1.0)
     plate = Plane(point=(0.5, 1.0), normal_vector=(0.0, -1.0))
     # The modulus given to the contact only makes its own give negligible: 1e-9 of the block's.
-    lid = Contact("lid", ("top",), plate, modulus=1e3, force_controlled=force_controlled)
+    lid = OutlineContact("lid", ("top",), plate, modulus=1e3, force_controlled=force_controlled)
     terms = [Elasticity(RUBBER), Viscosity(RUBBER, series), lid]
-    supports = [Support(("bottom",), x=False), Support(("left",), y=False)]
+    supports = [FixedEdges(("bottom",), x=False), FixedEdges(("left",), y=False)]
     return Problem(body, PlaneStrain(), terms, supports=supports), lid
 
 

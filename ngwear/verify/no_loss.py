@@ -17,7 +17,7 @@ import numpy as np
 
 from ngwear.effects.base import VOLUMETRIC_STRESS
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 from ngwear.laws.damage import TensileNormalStress
 from ngwear.loop.lost_elements import element_body
 from ngwear.loop.stage import Stage
@@ -25,7 +25,7 @@ from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.deactivation import Deactivation, DistortionFilter
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 
@@ -37,7 +37,7 @@ def scene(scheme: str = "explicit", strokes: tuple[Stroke, ...] = (), **deactiva
     """The block under the cylinder; ``strokes`` are those of a cycle, to and fro unless given."""
     cylinder = Cylinder(centre=(2.0, 3.99), radius=2.0)
     cycle = strokes or (Stroke(name="forth", travel=10.0), Stroke(name="back", travel=10.0, direction=-1.0))
-    spec = ContactSpec(
+    spec = Contact(
         name="cylinder",
         edges=("top",),
         surface=cylinder,
@@ -48,10 +48,10 @@ def scene(scheme: str = "explicit", strokes: tuple[Stroke, ...] = (), **deactiva
     )
     return Scene(
         name="block of elements",
-        contour=Contour.rectangle((0.0, 4.0), (0.0, 2.0)),
+        contour=Outline.rectangle((0.0, 4.0), (0.0, 2.0)),
         material=NeoHooke(shear=1.0, bulk_modulus=100.0),
         contacts=(spec,),
-        supports=(SupportSpec(edges=("bottom",)),),
+        supports=(Support(edges=("bottom",)),),
         program=Program(cycle=cycle, strokes=STROKES),
         accuracy=Accuracy(patch=0.1, coarse=0.5, mounting=0.1),
         wear=Wear(scheme=scheme, step="each", remesh="never"),

@@ -31,7 +31,7 @@ from ngwear.laws.damage import MaximumPrincipalStress, TensileNormalStress
 from ngwear.loop.lost_elements import exhaustion, tear
 from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
-from ngwear.scene.scene import SupportSpec
+from ngwear.scene.scene import Support
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.cell_blocks import grid, held, named, pull, reaction
 
@@ -128,7 +128,7 @@ def pull_by_force(state: State, wanted: float) -> float:
 
 def pulled_comb(*, force_controlled: bool) -> tuple[list[Event], float, float, float]:
     """Losses; worst errors of the forces' balance, of the stress and of the force against those by hand."""
-    supports = (SupportSpec(edges=("bottom", "top"), x=False), SupportSpec(edges=("left",), y=False))
+    supports = (Support(edges=("bottom", "top"), x=False), Support(edges=("left",), y=False))
     criterion = TensileNormalStress if force_controlled else MaximumPrincipalStress
     state = held(comb(), RUBBER, supports, criterion(critical=CRITICAL))
     events: list[Event] = []
@@ -161,7 +161,7 @@ def crack() -> Iterator[tuple[list[int], float]]:
     """Pull the notched strip: elements torn in each solve that tears any, and the balance of forces after it."""
     present = np.ones((NY, NX), dtype=bool)
     present[NY // 2, :TIP] = False
-    supports = (SupportSpec(edges=("bottom", "top")),)
+    supports = (Support(edges=("bottom", "top")),)
     cells = grid(np.linspace(0, 3, NX + 1), np.linspace(0, 1, NY + 1), present)
     state = held(cells, RUBBER, supports, MaximumPrincipalStress(critical=CRITICAL))
     for step in range(1, 200):

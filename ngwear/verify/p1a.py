@@ -18,12 +18,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance, relax
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
@@ -34,20 +34,22 @@ RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0)
 COARSE, PATCH, EDGE = 0.35, 0.1, 0.005
 
 
-def sheet(*, force_controlled: bool, edge: float) -> tuple[Problem, Contact]:
+def sheet(*, force_controlled: bool, edge: float) -> tuple[Problem, OutlineContact]:
     """Half sheet and cylinder, just touching; finest around ``edge``, the undeformed place of the contact's end."""
     patch, ends = np.arange(0.0, 2.0, PATCH), np.arange(edge - 0.04, edge + 0.04, EDGE)
     at = np.concatenate([patch, ends])
     size = np.repeat([PATCH, EDGE], [len(patch), len(ends)])
     seeds = np.stack([at, np.full(len(at), THICKNESS)], axis=1)
-    body = meshed(Contour.rectangle((0.0, WIDTH / 2), (0.0, THICKNESS)), COARSE, seeds, size)
+    body = meshed(Outline.rectangle((0.0, WIDTH / 2), (0.0, THICKNESS)), COARSE, seeds, size)
     cylinder = Cylinder(centre=(0.0, THICKNESS + RADIUS), radius=RADIUS)
-    contact = Contact("roller", ("top",), cylinder, force_controlled=force_controlled, modulus=RUBBER.shear_modulus)
-    supports = [Support(("bottom",)), Support(("left",), y=False)]
+    contact = OutlineContact(
+        "roller", ("top",), cylinder, force_controlled=force_controlled, modulus=RUBBER.shear_modulus
+    )
+    supports = [FixedEdges(("bottom",)), FixedEdges(("left",), y=False)]
     return Problem(body, PlaneStrain(), [Elasticity(RUBBER), contact], supports=supports), contact
 
 
-def width_and_peak(contact: Contact) -> tuple[float, float]:
+def width_and_peak(contact: OutlineContact) -> tuple[float, float]:
     """Half width [mm] and largest Cauchy pressure [MPa]."""
     (zone,) = contact.profile().zones()
     return max(zone.start[0], zone.end[0]), zone.peak

@@ -19,14 +19,14 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.newton import NewtonOptions
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
@@ -60,18 +60,20 @@ def stick_end(x: Array, spare: Array) -> float:
     return float(np.mean(ends))
 
 
-def pressed() -> tuple[Problem, Contact, StickSlip, float]:
+def pressed() -> tuple[Problem, OutlineContact, StickSlip, float]:
     """The problem under its normal load P' [N/mm]."""
     load = math.pi * MATERIAL.plane_strain_modulus * HALF_WIDTH**2 / (4 * RADIUS)
     at = np.arange(-1.1, 1.1 + SIZE / 2, SIZE) * HALF_WIDTH
     seeds = np.stack([at, np.full(len(at), BLOCK)], axis=1)
-    body = meshed(Contour.rectangle((-BLOCK, BLOCK), (0.0, BLOCK)), COARSE, seeds, SIZE)
+    body = meshed(Outline.rectangle((-BLOCK, BLOCK), (0.0, BLOCK)), COARSE, seeds, SIZE)
     cylinder = Cylinder(centre=(0.0, BLOCK + RADIUS), radius=RADIUS)
-    contact = Contact(
+    contact = OutlineContact(
         "cylinder", ("top",), cylinder, force_controlled=True, slides=True, modulus=MATERIAL.shear_modulus
     )
     friction = StickSlip(contact, MU)
-    problem = Problem(body, PlaneStrain(), [Elasticity(MATERIAL), contact, friction], supports=[Support(("bottom",))])
+    problem = Problem(
+        body, PlaneStrain(), [Elasticity(MATERIAL), contact, friction], supports=[FixedEdges(("bottom",))]
+    )
     problem.fields[contact.travel_name].vec[0] = HALF_WIDTH**2 / (2 * RADIUS)
     advance(problem, {"cylinder force [N]": load}, STEPS)
     return problem, contact, friction, load

@@ -35,12 +35,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 
@@ -67,14 +67,12 @@ def scene(patch: float) -> Scene:
     to, fro = (Stroke(name=name, travel=TRAVEL, direction=way) for name, way in (("to", 1.0), ("fro", -1.0)))
     return Scene(
         name="wear in partial slip",
-        contour=Contour(np.array(points), names, np.ones(len(points), dtype=bool)),
+        contour=Outline(np.array(points), names, np.ones(len(points), dtype=bool)),
         material=MATERIAL,
         contacts=(
-            ContactSpec(
-                name="shaft", edges=("top",), surface=shaft, force=LOAD, friction=MU, specific_wear_rate=WEAR_RATE
-            ),
+            Contact(name="shaft", edges=("top",), surface=shaft, force=LOAD, friction=MU, specific_wear_rate=WEAR_RATE),
         ),
-        supports=(SupportSpec(edges=("feet",)),),
+        supports=(Support(edges=("feet",)),),
         program=Program(cycle=(to, fro), strokes=LATE),
         accuracy=Accuracy(patch=patch, coarse=8.0, mounting=0.2, grading=0.4, stress_error=0.1, wear_error=0.05),
         wear=Wear(max_jump=LATE),

@@ -19,17 +19,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.viscosity import Viscosity
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.state_transfer import carry
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
 from ngwear.errors import ConvergenceError
 from ngwear.fields.background_mesh import Background, Seat
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import MooneyRivlin, PronySeries
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
@@ -43,7 +43,7 @@ WIDTH, BOTTOM, TOP, RADIUS = 1.5, 3.0, 4.5, 2.0
 PATCH, COARSE = 0.04, 0.2
 SEEDS = 26
 STEP, EARLY, LATE = 0.05, 20, 100
-OUTLINE = Contour.rectangle((0.0, WIDTH), (BOTTOM, TOP))
+OUTLINE = Outline.rectangle((0.0, WIDTH), (BOTTOM, TOP))
 KINEMATICS: dict[str, Kinematics] = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
 
 
@@ -65,8 +65,8 @@ def section(rng: np.random.Generator | None = None) -> Body:
 def problem_on(body: Body, kinematics: Kinematics, memory: Viscosity) -> Problem:
     """The block under the cylinder."""
     cylinder = Cylinder(centre=(0.0, TOP + RADIUS), radius=RADIUS)
-    contact = Contact("roller", ("top",), cylinder, modulus=RUBBER.shear_modulus)
-    supports = [Support(("bottom",), x=False), Support(("left",), y=False)]
+    contact = OutlineContact("roller", ("top",), cylinder, modulus=RUBBER.shear_modulus)
+    supports = [FixedEdges(("bottom",), x=False), FixedEdges(("left",), y=False)]
     return Problem(body, kinematics, [Elasticity(RUBBER), memory, contact], supports=supports)
 
 

@@ -16,14 +16,14 @@ from __future__ import annotations
 import math
 
 from ngwear.effects.base import DISPLACEMENT, Term
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.newton import NewtonOptions
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import Axisymmetric
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import Hyperelastic, MooneyRivlin, NeoHooke
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
@@ -43,8 +43,8 @@ def lame_compliance(material: Hyperelastic) -> float:
 
 
 def _problem(material: Hyperelastic, load: Term) -> Problem:
-    body = meshed(Contour.rectangle((0.0, LENGTH), (INNER, OUTER)), SIZE)
-    held = Support(("left", "right"), y=False)
+    body = meshed(Outline.rectangle((0.0, LENGTH), (INNER, OUTER)), SIZE)
+    held = FixedEdges(("left", "right"), y=False)
     return Problem(body, Axisymmetric(), [Elasticity(material), load], supports=[held])
 
 
@@ -57,7 +57,7 @@ def pressurised(material: Hyperelastic, pressure: float) -> float:
 
 def on_rod(material: Hyperelastic, displacement: float) -> tuple[float, float]:
     """Mean and largest Cauchy contact pressure on a rod that expands the bore by ``displacement`` [MPa]."""
-    contact = Contact("rod", ("bottom",), Plane.rod(2 * INNER), modulus=material.shear_modulus)
+    contact = OutlineContact("rod", ("bottom",), Plane.rod(2 * INNER), modulus=material.shear_modulus)
     problem = _problem(material, contact)
     advance(problem, {"rod approach [mm]": displacement}, STEPS)
     # The rod's surface: 2 pi times its radius times the length.

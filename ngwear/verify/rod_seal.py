@@ -20,7 +20,7 @@ import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import SceneError
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.run import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.state import StrokeReport
@@ -51,7 +51,7 @@ def run_and_watch(scene: Scene) -> tuple[Result, list[StrokeReport]]:
     return run_scene(scene, on_step=keep), first
 
 
-def zones_on(profile: ContactProfile, contour: Contour, edge: str) -> list[float]:
+def zones_on(profile: ContactProfile, contour: Outline, edge: str) -> list[float]:
     """Peak pressures of the contact zones that lie on the named edge [MPa]."""
     peaks = []
     for zone in profile.zones():

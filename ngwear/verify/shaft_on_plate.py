@@ -35,7 +35,7 @@ import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
-from ngwear.geometry.outline import Array, Contour
+from ngwear.geometry.outline import Array, Outline
 from ngwear.loop.stepper import Stepper
 from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch
@@ -61,7 +61,7 @@ def on_mesh(scene: Scene, patch: float) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy, patch=patch, mounting=max(patch, scene.accuracy.mounting)))
 
 
-def worn_depth(contour: Contour) -> Array:
+def worn_depth(contour: Outline) -> Array:
     """Depth below the sheet's unworn top at ``GRID`` [mm]."""
     on = contour.on(("top",))
     points = contour.points[on | np.roll(on, 1)]

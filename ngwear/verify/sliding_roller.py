@@ -12,13 +12,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
@@ -34,12 +34,12 @@ class Slider:
     def __init__(self, patch: float) -> None:
         along = np.arange(-3.0, 2.5, patch)
         seeds = np.stack([along, np.full(len(along), THICKNESS)], axis=1)
-        body = meshed(Contour.rectangle((-WIDTH / 2, WIDTH / 2), (0.0, THICKNESS)), 0.5, seeds, patch)
+        body = meshed(Outline.rectangle((-WIDTH / 2, WIDTH / 2), (0.0, THICKNESS)), 0.5, seeds, patch)
         roller = Cylinder(centre=(0.0, THICKNESS + RADIUS), radius=RADIUS)
-        self.contact = Contact("roller", ("top",), roller, force_controlled=True, modulus=RUBBER.shear_modulus)
+        self.contact = OutlineContact("roller", ("top",), roller, force_controlled=True, modulus=RUBBER.shear_modulus)
         self.friction = FullSliding(self.contact, 1.0)  # times "slip": mu
         terms = [Elasticity(RUBBER), self.contact, self.friction]
-        self.problem = Problem(body, PlaneStrain(), terms, supports=[Support(("bottom",))])
+        self.problem = Problem(body, PlaneStrain(), terms, supports=[FixedEdges(("bottom",))])
         self.problem.set_loads({"roller slip": 0.0})
         self.problem.fields[self.contact.travel_name].vec[0] = BITE
         advance(self.problem, {"roller force [N]": FORCE}, StepOptions(first=1 / 64))

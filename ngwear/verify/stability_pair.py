@@ -17,10 +17,10 @@ import warnings
 import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import steps
@@ -37,14 +37,12 @@ def scene(scheme: str, times: float) -> Scene:
     counter = Plane(point=(0.0, HEIGHT), normal_vector=(0.0, -1.0))
     return Scene(
         name=f"{scheme} wear",
-        contour=Contour.rectangle((-HALF, HALF), (0.0, HEIGHT)),
+        contour=Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)),
         material=RUBBER,
         contacts=(
-            ContactSpec(
-                name="plane", edges=("top",), surface=counter, force=2 * HALF * MEAN, specific_wear_rate=WEAR_RATE
-            ),
+            Contact(name="plane", edges=("top",), surface=counter, force=2 * HALF * MEAN, specific_wear_rate=WEAR_RATE),
         ),
-        supports=(SupportSpec(edges=("bottom",)),),
+        supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(Stroke(name="turn", travel=times * CRITICAL),), strokes=STEPS),
         accuracy=Accuracy(patch=PATCH, coarse=0.2, mounting=PATCH),
         wear=Wear(scheme=scheme, step="each"),

@@ -23,19 +23,19 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.memory import Memory
 from ngwear.effects.stroke_memory import StrokeMemory
 from ngwear.effects.viscosity import Viscosity
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.background_mesh import Background
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.memory_over_cycles import CycleMemory
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.time_step_error import ahead
@@ -43,7 +43,7 @@ from ngwear.materials import MooneyRivlin, PronySeries
 from ngwear.results import quantities_of_interest
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import ContactSpec, FluidSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Contact, Fluid, Scene, Support, Wear
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
@@ -61,7 +61,7 @@ WAY = 10.0  # mm
 def block() -> Body:
     """The section, 0.06 mm in the contact."""
     x = np.linspace(-1.0, 1.0, 34)
-    contour = Contour.rectangle((-HALF, HALF), (0.0, HEIGHT))
+    contour = Outline.rectangle((-HALF, HALF), (0.0, HEIGHT))
     return meshed(contour, 0.3, np.column_stack([x, np.full(34, HEIGHT)]), 0.06)
 
 
@@ -70,10 +70,10 @@ class Rig:
 
     def __init__(self, body: Body, memory: Memory) -> None:
         cylinder = Cylinder(centre=(0.0, HEIGHT + RADIUS), radius=RADIUS)
-        self.contact = Contact("roller", ("top",), cylinder, modulus=RUBBER.shear_modulus)
+        self.contact = OutlineContact("roller", ("top",), cylinder, modulus=RUBBER.shear_modulus)
         side = FluidPressure(("right",), ("right",), (self.contact,))
         terms = [Elasticity(RUBBER), memory, self.contact, FullSliding(self.contact, FRICTION), side]
-        self.problem = Problem(body, PlaneStrain(), terms, supports=[Support(("bottom",))])
+        self.problem = Problem(body, PlaneStrain(), terms, supports=[FixedEdges(("bottom",))])
         self.problem.set_loads({"roller slip": -1.0})
         advance(self.problem, {"roller approach [mm]": DEPTH}, StepOptions(first=0.25))
 
@@ -159,13 +159,13 @@ def scene(parts: int) -> Scene:
     to = Stroke(name="to", travel=WAY, direction=-1.0, speed=WAY / DURATION)
     return Scene(
         name="block under a cylinder",
-        contour=Contour.rectangle((-HALF, HALF), (0.0, HEIGHT)),
+        contour=Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)),
         material=RUBBER,
         prony=ARMS,
-        contacts=(ContactSpec(name="roller", edges=("top",), surface=cylinder, friction=FRICTION, refine=True),),
+        contacts=(Contact(name="roller", edges=("top",), surface=cylinder, friction=FRICTION, refine=True),),
         program=Program(cycle=(to, replace(to, name="fro", direction=1.0, pressure=PRESSURE)), strokes=STROKES),
-        fluid=FluidSpec(edges=("right",), inlet=("right",)),
-        supports=(SupportSpec(edges=("bottom",)),),
+        fluid=Fluid(edges=("right",), inlet=("right",)),
+        supports=(Support(edges=("bottom",)),),
         accuracy=Accuracy(patch=0.06, coarse=0.3, mounting=0.06, parts=parts),
         wear=Wear(step="each"),
     )
@@ -180,7 +180,9 @@ def time_step() -> list[Check]:
         forces = [abs(report.forces["roller"][1]) for report in ahead(result.state).reports]
         force = np.mean(np.reshape(forces, (2, parts)), axis=1)
         off[parts] = float(np.linalg.norm(force - exact) / np.linalg.norm(exact))
-        said = result.summary["error estimates"][f"{quantities_of_interest.FRICTION[:-4]} {quantities_of_interest.BY_TIME_STEP}"]
+        said = result.summary["error estimates"][
+            f"{quantities_of_interest.FRICTION[:-4]} {quantities_of_interest.BY_TIME_STEP}"
+        ]
         words = (
             f"{parts} part{'' if parts == 1 else 's'} a stroke: stated over true error of the force by its time step"
         )

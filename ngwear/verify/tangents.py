@@ -20,7 +20,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term
 from ngwear.effects.coefficient import Coefficient
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.contact_patch import PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
@@ -31,7 +31,7 @@ from ngwear.effects.unilateral import UnilateralContact
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Solid
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.sheet import Sheet
 from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
@@ -123,7 +123,7 @@ class _HeldWear(PressureWear):
 def _contact(
     surface: RigidSurface, forced: bool, wear: float, law: WearLaw | None = None, **order: int
 ) -> UnilateralContact:
-    kind = PatchContact if isinstance(surface, Sphere) else Contact
+    kind = PatchContact if isinstance(surface, Sphere) else OutlineContact
     contact = kind("rigid", ("top",), surface, force_controlled=forced, modulus=1.5, **order)
     if law is not None:
         contact.pressure_wear = _HeldWear(law, modulus=1.5, coefficient=Coefficient("rigid", FRICTION[" by pressure"]))
@@ -183,7 +183,7 @@ def _cases_of_order(order: int) -> Iterator[tuple[str, Kinematics, list[Term]]]:
 
 def run() -> list[Check]:
     """One check a term and variant."""
-    section = meshed(Contour.rectangle((0.0, WIDTH), (BOTTOM, TOP)), SIZE)
+    section = meshed(Outline.rectangle((0.0, WIDTH), (BOTTOM, TOP)), SIZE)
     solid = Sheet(
         thickness=TOP, track_radius=8.0, reach=2.0, beside=1.5, seeds=NOWHERE, sizes=NOWHERE[:, 0], coarse=1.0
     )

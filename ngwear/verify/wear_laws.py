@@ -30,7 +30,7 @@ from dataclasses import replace
 import numpy as np
 
 from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear
-from ngwear.scene.scene import ContactSpec, Scene
+from ngwear.scene.scene import Contact, Scene
 from ngwear.verify import stability_pair, worn_cylinder
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import CONTACT, depth_at, middle_pressure, steps
@@ -106,7 +106,7 @@ def _rate(rate: float) -> dict[str, object]:
 
 def _with(run: Scene, **contact: object) -> Scene:
     """The scene with other values of its contact."""
-    spec: ContactSpec = replace(run.contacts[0], **contact)  # type: ignore[arg-type]
+    spec: Contact = replace(run.contacts[0], **contact)  # type: ignore[arg-type]
     return replace(run, contacts=(spec,))
 
 

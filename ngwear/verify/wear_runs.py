@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import CALM
 from ngwear.materials import Hyperelastic
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Save, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Save, Scene, Support, Wear
 from ngwear.surfaces import Cylinder
 from ngwear.wear.backward_differences import share_of_last
 
@@ -62,14 +62,12 @@ class CylinderOnBlock:
         ring = Cylinder(centre=(0.0, size + self.radius), radius=self.radius)
         return Scene(
             name=name,
-            contour=Contour.rectangle((-size, size), (0.0, size)),
+            contour=Outline.rectangle((-size, size), (0.0, size)),
             material=self.material,
             contacts=(
-                ContactSpec(
-                    name=CONTACT, edges=("top",), surface=ring, force=self.load, specific_wear_rate=self.wear_rate
-                ),
+                Contact(name=CONTACT, edges=("top",), surface=ring, force=self.load, specific_wear_rate=self.wear_rate),
             ),
-            supports=(SupportSpec(edges=("bottom",)),),
+            supports=(Support(edges=("bottom",)),),
             program=Program(cycle=(Stroke(name="turn", travel=self.travel),), strokes=marks[-1]),
             accuracy=Accuracy(
                 patch=self.patch, coarse=size / 5, mounting=max(self.patch, 0.02), wear_error=self.wear_error
@@ -130,7 +128,7 @@ def pressure_over_volume_ratio(scene: Scene, profile: ContactProfile) -> float:
     return float(profile.load @ (1 + 2 * compliance * profile.nominal_pressure))
 
 
-def depth_at(contour: Contour, edge: str, top: float, x: float) -> float:
+def depth_at(contour: Outline, edge: str, top: float, x: float) -> float:
     """Depth of the worn edge, a graph over x, below the height ``top`` [mm]."""
     on = contour.on((edge,))
     points = contour.points[on | np.roll(on, 1)]

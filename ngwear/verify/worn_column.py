@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import lambertw
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.pressure_wear import PressureWear
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.laws import PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
 from ngwear.verify.wear_runs import steps
@@ -30,7 +30,7 @@ CONFINED = RUBBER.bulk_modulus + 4 * RUBBER.shear_modulus / 3  # M: stress over 
 WIDTH, HEIGHT, PATCH, STRAIN, WEAR_RATE = 1.0, 1.0, 0.25, 1e-4, 1e-3
 FIRST = CONFINED * STRAIN  # pressure before any wear [MPa]
 UNIT = HEIGHT / (CONFINED * WEAR_RATE)  # way over which Archard's pressure falls to 1/e [mm]
-CONTOUR = Contour.rectangle((0.0, WIDTH), (0.0, HEIGHT))
+CONTOUR = Outline.rectangle((0.0, WIDTH), (0.0, HEIGHT))
 SURFACE = Plane(point=(0.0, HEIGHT * (1 - STRAIN)), normal_vector=(0.0, -1.0))
 THRESHOLD = 0.4
 LAWS: dict[str, tuple[WearLaw, Callable[[float], float]]] = {
@@ -42,14 +42,14 @@ LAWS: dict[str, tuple[WearLaw, Callable[[float], float]]] = {
 
 
 def scene(law: WearLaw | None, way: float, count: int, *, scheme: str = "implicit", **contact: object) -> Scene:
-    """The column over a way [``UNIT``] in some strokes, each of them solved; ``contact`` as of ``ContactSpec``."""
+    """The column over a way [``UNIT``] in some strokes, each of them solved; ``contact`` as of ``Contact``."""
     spec = {"specific_wear_rate": WEAR_RATE, "wear_law": law} | contact
     return Scene(
         name="column",
         contour=CONTOUR,
         material=RUBBER,
-        contacts=(ContactSpec(name="plane", edges=("top",), surface=SURFACE, **spec),),
-        supports=(SupportSpec(edges=("bottom",), x=False), SupportSpec(edges=("left", "right"), y=False)),
+        contacts=(Contact(name="plane", edges=("top",), surface=SURFACE, **spec),),
+        supports=(Support(edges=("bottom",), x=False), Support(edges=("left", "right"), y=False)),
         program=Program(cycle=(Stroke(name="turn", travel=way * UNIT / count),), strokes=count),
         accuracy=Accuracy(patch=PATCH, coarse=PATCH, mounting=PATCH),
         wear=Wear(scheme=scheme, step="each"),
@@ -73,9 +73,9 @@ def depth(run: Scene) -> float:
 def by_backward_euler(law: WearLaw, way: float, count: int) -> float:
     """The pressure at the end [-] by plain backward Euler, the depth kept in the gap of one contact."""
     body = meshed(CONTOUR, PATCH)
-    contact = Contact("plane", ("top",), SURFACE, wears=True, modulus=RUBBER.shear_modulus)
+    contact = OutlineContact("plane", ("top",), SURFACE, wears=True, modulus=RUBBER.shear_modulus)
     contact.pressure_wear = PressureWear(law, modulus=RUBBER.shear_modulus)
-    supports = [Support(("bottom",), x=False), Support(("left", "right"), y=False)]
+    supports = [FixedEdges(("bottom",), x=False), FixedEdges(("left", "right"), y=False)]
     problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), contact], supports=supports)
     contact.load.Set(-HEIGHT * STRAIN)
     advance(problem, {"plane approach [mm]": 0.0})

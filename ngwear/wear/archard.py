@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 
 Array = NDArray[np.float64]
 
 
-def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Array:
+def worn_share(contour: Outline, profile: ContactProfile, amount: Array) -> Array:
     """Share out the worn area of a contact's mesh nodes among the outline's points: depth times length of each.
 
     Archard's law (J. Appl. Phys. 24 (1953) 981) per reference area, ``W = k P ds / J`` with the nominal
@@ -25,7 +25,7 @@ def worn_share(contour: Contour, profile: ContactProfile, amount: Array) -> Arra
 
     Parameters
     ----------
-    contour : Contour
+    contour : Outline
     profile : ContactProfile
     amount : array, shape (k,)
         ``int W phi_i ds`` at the profile's nodes [mm²].

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import recede
 from ngwear.surfaces import WornProfile
 from ngwear.wear.archard import worn_share
@@ -123,7 +123,7 @@ class Fretting:
     ----------
     problem : Problem
         In equilibrium at rest under its load.
-    contact : Contact
+    contact : OutlineContact
         That slides and has a worn profile.
     friction : FullSliding
     elasticity : Elasticity
@@ -143,7 +143,7 @@ class Fretting:
     """
 
     problem: Problem
-    contact: Contact
+    contact: OutlineContact
     friction: FullSliding
     elasticity: Elasticity
     motion: Motion
@@ -190,11 +190,11 @@ class Fretting:
             self.work.retries += 1
             self.control.cut(jump)
 
-    def _save(self) -> tuple[Contour, WornProfile, list[Visit], dict[str, float]]:
+    def _save(self) -> tuple[Outline, WornProfile, list[Visit], dict[str, float]]:
         numbers = {name: getattr(self, name) for name in ("drag", "worn", "counter_worn")}
         return self.body.contour, self.contact.counter, [replace(visit) for visit in self._visits], numbers
 
-    def _restore(self, contour: Contour, counter: WornProfile, visits: list[Visit], numbers: dict[str, float]) -> None:
+    def _restore(self, contour: Outline, counter: WornProfile, visits: list[Visit], numbers: dict[str, float]) -> None:
         self.body.move_to(contour)
         self.contact.counter, self._visits = counter, visits
         self.__dict__.update(numbers)

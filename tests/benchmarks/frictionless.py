@@ -13,13 +13,13 @@ import time
 
 import numpy as np
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.newton import solve
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import SizeField
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
@@ -33,7 +33,7 @@ FRICTION = ("ngwear.effects.friction", "ngwear.effects.stick_slip", "ngwear.effe
 
 def sheet():
     """The meshed sheet, fine under the roller."""
-    outline = Contour.rectangle((-WIDTH / 2, WIDTH / 2), (0.0, THICKNESS))
+    outline = Outline.rectangle((-WIDTH / 2, WIDTH / 2), (0.0, THICKNESS))
     at = np.arange(-1.9, 1.9 + PATCH / 2, PATCH)
     seeds = np.stack([at, np.full(len(at), THICKNESS)], axis=1)
     return Body(outline, SizeField(seeds, np.full(len(at), PATCH), COARSE))
@@ -41,8 +41,8 @@ def sheet():
 
 def by_hand():
     """Elasticity and contact, and nothing else."""
-    contact = Contact("roller", ("top",), ROLLER, modulus=RUBBER.shear_modulus)
-    problem = Problem(sheet(), PlaneStrain(), [Elasticity(RUBBER), contact], supports=[Support(("bottom",))])
+    contact = OutlineContact("roller", ("top",), ROLLER, modulus=RUBBER.shear_modulus)
+    problem = Problem(sheet(), PlaneStrain(), [Elasticity(RUBBER), contact], supports=[FixedEdges(("bottom",))])
     assert not set(FRICTION) & set(sys.modules), "friction is imported"
     return problem, contact
 
@@ -51,15 +51,15 @@ def through_scene():
     """What the program makes of a scene without friction; it imports no more."""
     from ngwear.loop.stage import Stage
     from ngwear.scene.program import Program, Stroke
-    from ngwear.scene.scene import ContactSpec, Scene, SupportSpec
+    from ngwear.scene.scene import Contact, Scene, Support
 
     body = sheet()
     scene = Scene(
         name="P1a",
         contour=body.base,
         material=RUBBER,
-        contacts=(ContactSpec(name="roller", edges=("top",), surface=ROLLER),),
-        supports=(SupportSpec(edges=("bottom",)),),
+        contacts=(Contact(name="roller", edges=("top",), surface=ROLLER),),
+        supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(Stroke(name="turn", travel=1.0),), strokes=1),
     )
     stage = Stage(scene, body)

@@ -50,23 +50,23 @@ MODULES = {
 
 def pair(effect):
     """The scene with the effect, and without."""
-    from ngwear.geometry.outline import Contour
+    from ngwear.geometry.outline import Outline
     from ngwear.laws import PowerWear
     from ngwear.materials import MooneyRivlin, PronySeries
     from ngwear.scene.deactivation import Deactivation
     from ngwear.scene.program import Program, Stroke
-    from ngwear.scene.scene import Accuracy, ContactSpec, FluidSpec, Scene, SupportSpec, Wear
+    from ngwear.scene.scene import Accuracy, Contact, Fluid, Scene, Support, Wear
     from ngwear.surfaces import Cylinder
 
     forth = Stroke(name="forth", travel=10.0, speed=20.0)
     back = Stroke(name="back", travel=10.0, speed=20.0, direction=-1.0)
-    roller = ContactSpec(name="roller", edges=("top",), surface=Cylinder(centre=(0.0, 6.75), radius=5.0), refine=True)
+    roller = Contact(name="roller", edges=("top",), surface=Cylinder(centre=(0.0, 6.75), radius=5.0), refine=True)
     bare = Scene(
         name="sheet",
-        contour=Contour.rectangle((-5.0, 5.0), (0.0, 2.0)),
+        contour=Outline.rectangle((-5.0, 5.0), (0.0, 2.0)),
         material=MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
         contacts=(roller,),
-        supports=(SupportSpec(edges=("bottom",)),),
+        supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(forth, back), strokes=2),
         accuracy=Accuracy(patch=0.1, coarse=0.5, mounting=0.1),
         wear=Wear(step="each", remesh="never"),
@@ -84,7 +84,7 @@ def pair(effect):
         "fluid pressure": (
             replace(
                 bare,
-                fluid=FluidSpec(edges=("right", "top"), inlet=("right",)),
+                fluid=Fluid(edges=("right", "top"), inlet=("right",)),
                 program=replace(bare.program, cycle=(forth, sealed)),
             ),
             bare,

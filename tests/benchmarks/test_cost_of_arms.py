@@ -14,7 +14,7 @@ import numpy as np
 
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.viscosity import Viscosity
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.fields.kinematics import Solid
 from ngwear.geometry.sheet import Sheet
 from ngwear.materials import MooneyRivlin, PronySeries
@@ -30,7 +30,7 @@ def block(arms):
     size = {"thickness": 4.0, "track_radius": 16.5, "reach": 8.0, "beside": 8.0}
     body = Sheet(**size, seeds=nowhere, sizes=nowhere[:, 0], coarse=0.9)
     memory = Viscosity(RUBBER, series)
-    problem = Problem(body, Solid(), [Elasticity(RUBBER), memory], supports=[Support(("bottom",))])
+    problem = Problem(body, Solid(), [Elasticity(RUBBER), memory], supports=[FixedEdges(("bottom",))])
     problem.set_time_step(0.1)
     return problem, memory
 

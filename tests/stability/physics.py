@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.invariants import Invariants
 from ngwear.equilibrium.problem import Problem
 
@@ -55,7 +55,7 @@ def body(problem: Problem) -> list[Finding]:
     ]
 
 
-def pressure(contact: Contact) -> list[Finding]:
+def pressure(contact: OutlineContact) -> list[Finding]:
     """No suction, no ripple."""
     ends = contact.end_pressures()
     profile = contact.profile()

@@ -7,14 +7,14 @@ from case import Case
 from physics import Finding, body, near, pressure
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.stick_slip import StickSlip
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
 from ngwear.verify.builders import meshed
@@ -37,15 +37,15 @@ def sheet(*, mu=0.0, law=FullSliding, forced=True, patch=0.05, bulk=1000.0, leng
         bands = np.concatenate([x + finest * np.arange(-30, 31) for x in (-1.595, 0.0, 1.595)])
         at, sizes = np.concatenate([at, bands]), np.concatenate([sizes, np.full(len(bands), finest)])
     seeds = np.stack([at, np.full(len(at), 2.0)], axis=1)
-    outline = Contour.rectangle((-10 * length, 10 * length), (0.0, 2 * length))
+    outline = Outline.rectangle((-10 * length, 10 * length), (0.0, 2 * length))
     block = meshed(outline, 0.5 * length, seeds * length, sizes * length)
     roller = Cylinder(centre=(0.0, 7.0 * length), radius=5.0 * length)
-    contact = Contact("roller", ("top",), roller, force_controlled=forced, modulus=rubber.shear_modulus)
+    contact = OutlineContact("roller", ("top",), roller, force_controlled=forced, modulus=rubber.shear_modulus)
     terms, friction = [Elasticity(rubber), contact], None
     if mu > 0:
         friction = law(contact, mu)
         terms.append(friction)
-    problem = Problem(block, PlaneStrain(), terms, supports=[Support(("bottom",))])
+    problem = Problem(block, PlaneStrain(), terms, supports=[FixedEdges(("bottom",))])
     if forced:
         problem.fields[contact.travel_name].vec[0] = 0.01 * length
     return problem, contact, friction

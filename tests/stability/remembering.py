@@ -8,7 +8,7 @@ from case import Case
 from physics import Finding, body, near, pressure
 
 from ngwear.effects.viscosity import Viscosity
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.materials import PronySeries
 from ngwear.scene.pin_scene import Pin, PinMesh
@@ -55,7 +55,7 @@ def rolled(ratio, mu) -> list[Finding]:
     plain, contact, friction = pressing.sheet(mu=mu, forced=False, patch=0.1)
     elasticity, *others = plain.terms
     rubber = Viscosity(elasticity.material, ARM)
-    problem = Problem(plain.body, plain.kinematics, [elasticity, rubber, *others], supports=[Support(("bottom",))])
+    problem = Problem(plain.body, plain.kinematics, [elasticity, rubber, *others], supports=[FixedEdges(("bottom",))])
     if friction:
         problem.set_loads({pressing.SLIP: 1.0})
     found, forces = [], []

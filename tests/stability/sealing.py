@@ -8,15 +8,15 @@ from case import Case
 from physics import Finding, body, near, pressure
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.mounting import mount
 from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage
@@ -33,10 +33,10 @@ PRESS = "fluid pressure [MPa]"
 
 def on_rod(interference, mu) -> list[Finding]:
     """A ring on a rod that expands its bore; the closed form has no friction."""
-    rod = Contact("rod", ("bottom",), Plane.rod(2 * ring.INNER), modulus=RUBBER.shear_modulus)
+    rod = OutlineContact("rod", ("bottom",), Plane.rod(2 * ring.INNER), modulus=RUBBER.shear_modulus)
     terms = [Elasticity(RUBBER), rod] + ([FullSliding(rod, mu)] if mu else [])
-    outline = Contour.rectangle((0.0, ring.LENGTH), (ring.INNER, ring.OUTER))
-    held = Support(("left", "right"), y=False)
+    outline = Outline.rectangle((0.0, ring.LENGTH), (ring.INNER, ring.OUTER))
+    held = FixedEdges(("left", "right"), y=False)
     problem = Problem(meshed(outline, ring.SIZE), Axisymmetric(), terms, supports=[held])
     grown = interference * ring.INNER
     advance(problem, {"rod approach [mm]": grown})
@@ -86,9 +86,9 @@ def seal_turned_round(pressure_on) -> list[Finding]:
 
 def unheld(held, mu) -> list[Finding]:
     """A block under a lid that a force presses on, and something that does not hold it."""
-    body_ = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), 0.5)
+    body_ = meshed(Outline.rectangle((0.0, 2.0), (0.0, 1.0)), 0.5)
     lid = Plane(point=(0.0, 1.0), normal_vector=(0.0, -1.0))
-    contact = Contact("lid", ("top",), lid, modulus=1.5, force_controlled=True)
+    contact = OutlineContact("lid", ("top",), lid, modulus=1.5, force_controlled=True)
     terms = [Elasticity(RUBBER), contact] + ([FullSliding(contact, mu)] if mu else [])
     problem = Problem(body_, PlaneStrain(), terms, supports=held)
     problem.fields[contact.travel_name].vec[0] = 1e-3
@@ -106,7 +106,7 @@ def cases() -> list[Case]:
     ]
     seal = "the shipped seal turned round in a step"
     found += [Case(seal, f"0 to {p:g} MPa and friction reversed", partial(seal_turned_round, p)) for p in (0.5, 2.0)]
-    bottom = [Support(("bottom",))]
+    bottom = [FixedEdges(("bottom",))]
     found += [
         Case(
             "nothing holds the part",
@@ -117,13 +117,13 @@ def cases() -> list[Case]:
         Case(
             "nothing holds the part",
             "free along",
-            partial(unheld, [Support(("bottom",), x=False)], 0.3),
+            partial(unheld, [FixedEdges(("bottom",), x=False)], 0.3),
             "the part along x:",
         ),
         Case(
             "nothing holds the part",
             "free across",
-            partial(unheld, [Support(("bottom",), y=False)], 0.0),
+            partial(unheld, [FixedEdges(("bottom",), y=False)], 0.0),
             "the part along y:",
         ),
         Case("nothing holds the part", "held", partial(unheld, bottom, 0.3)),

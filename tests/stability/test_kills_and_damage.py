@@ -15,7 +15,7 @@ import pytest
 from ngwear.equilibrium.linear import has_pardiso
 from ngwear.errors import GeometryError, ResultError
 from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import recede
 from ngwear.loop.run import run
 from ngwear.plots.wear import plot
@@ -97,7 +97,7 @@ def wavy(rng, n):
     """A star-shaped outline with random waves."""
     angle = 2 * np.pi * np.arange(n) / n
     radius = 1 + sum(rng.uniform(-0.15, 0.15) * np.cos(k * angle + rng.uniform(0, 6)) for k in range(2, 6))
-    return Contour(radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1), ("rim",) * n, np.zeros(n, bool))
+    return Outline(radius[:, None] * np.stack([np.cos(angle), np.sin(angle)], axis=1), ("rim",) * n, np.zeros(n, bool))
 
 
 @pytest.mark.parametrize("seed", range(200))

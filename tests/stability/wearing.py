@@ -7,11 +7,11 @@ import numpy as np
 from case import Case
 from physics import ROUGHNESS, Finding, body, book, near, pressure
 
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec, Wear
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
 from ngwear.surfaces import Cylinder, Plane
 from ngwear.verify import stability_pair
 
@@ -63,19 +63,19 @@ def stepped(scheme, times) -> list[Finding]:
     return found
 
 
-def top(points: list[tuple[float, float]], width: float, height: float, *, corners=()) -> Contour:
+def top(points: list[tuple[float, float]], width: float, height: float, *, corners=()) -> Outline:
     """Rectangle from x = 0 whose top, from right to left, runs through points; ``corners`` of them are sharp."""
     outline = [(0.0, 0.0), (width, 0.0), (width, height), *points, (0.0, height)]
     names = ("bottom", "right", *(("top",) * (len(points) + 1)), "left")
     sharp = np.array([True, True, True, *(k in corners for k in range(len(points))), True])
-    return Contour(np.array(outline), names, sharp)
+    return Outline(np.array(outline), names, sharp)
 
 
 def pressed_by(
     surface, contour, *, force, travel, strokes, patch=0.05, rate=WEAR_RATE, mu=0.0, coarse=0.3, **options
 ) -> Scene:
     """A part, its bottom bonded, under a surface that a force presses on and that slides."""
-    contact = ContactSpec(
+    contact = Contact(
         name="counter", edges=("top",), surface=surface, force=force, specific_wear_rate=rate, friction=mu, refine=True
     )
     return Scene(
@@ -83,7 +83,7 @@ def pressed_by(
         contour=contour,
         material=RUBBER,
         contacts=(contact,),
-        supports=(SupportSpec(edges=("bottom",)),),
+        supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(Stroke(name="stroke", travel=travel),), strokes=strokes),
         accuracy=Accuracy(patch=patch, coarse=coarse, mounting=patch),
         wear=Wear(**({"step": "each"} | options)),
@@ -95,7 +95,7 @@ def from_a_gap(gap) -> list[Finding]:
     forces = []
     for away in (0.0, gap):
         roller = Cylinder(centre=(2.0, 3.0 + away), radius=2.0)
-        outline = Contour.rectangle((0.0, 4.0), (0.0, 1.0))
+        outline = Outline.rectangle((0.0, 4.0), (0.0, 1.0))
         scene = pressed_by(roller, outline, force=0.5, travel=1.0, strokes=1, rate=0.0, patch=0.1)
         stepper = Stepper(scene)
         state = stepper.start()
@@ -139,7 +139,7 @@ def ridge_worn_away(count, high) -> list[Finding]:
 
 def worn_thin(left, *, strokes=20) -> list[Finding]:
     """A sheet of 0.4 mm, 2 mm wide, worn by a plane until this share of it is left."""
-    outline = Contour.rectangle((0.0, 2.0), (0.0, 0.4))
+    outline = Outline.rectangle((0.0, 2.0), (0.0, 0.4))
     plane = Plane(point=(0.0, 0.4), normal_vector=(0.0, -1.0))
     travel = (1 - left) * 0.8 / (WEAR_RATE * 0.1) / strokes
     scene = pressed_by(plane, outline, force=0.1, travel=travel, strokes=strokes, patch=0.05, coarse=0.1)

@@ -9,7 +9,7 @@ import numpy as np
 
 from ngwear.geometry.body import _outline
 from ngwear.geometry.meshed import Meshed
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 
 SIDES = ("bottom", "right", "top", "left")
 
@@ -58,7 +58,7 @@ class Block(Meshed):
         self.mesh = ng.Mesh(mesh)
         around = np.concatenate([line[:-1] for line in lines])
         names = tuple(name for name, line in zip(SIDES, lines, strict=True) for _ in line[:-1])
-        self.base = self.contour = Contour(points[around], names, np.ones(len(around), dtype=bool))
+        self.base = self.contour = Outline(points[around], names, np.ones(len(around), dtype=bool))
 
     @property
     def outline(self):

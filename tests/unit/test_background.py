@@ -11,7 +11,7 @@ from ngwear.errors import SceneError
 from ngwear.fields.background_mesh import Background, Seat
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.fields.locator import Locator
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke, PronySeries
 from ngwear.verify.builders import meshed
 
@@ -40,7 +40,7 @@ def shrunk(contour, depth, over):
     points = contour.points.copy()
     height = np.clip((points[:, 1] - (3 - over)) / over, 0, 1)
     points[:, 1] -= depth * height
-    return Contour(points, contour.names, contour.corners)
+    return Outline(points, contour.names, contour.corners)
 
 
 def test_points_are_found_in_a_mesh_that_has_moved_with_its_outline(body):

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 
 SQUARE = [[0, 0], [1, 0], [1, 1], [0, 1]]
 
 
 def contour(points, names=None, corners=None):
     n = len(points)
-    return Contour(np.array(points, dtype=float), names or ("edge",) * n, np.array(corners or [True] * n))
+    return Outline(np.array(points, dtype=float), names or ("edge",) * n, np.array(corners or [True] * n))
 
 
 def test_area_length_and_turning_of_a_rectangle(rectangle):

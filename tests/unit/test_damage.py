@@ -21,7 +21,7 @@ from ngwear.materials import NeoHooke
 from ngwear.scene.deactivation import DistortionFilter
 from ngwear.scene.program import Program
 from ngwear.scene.read_deactivation import read_deactivation
-from ngwear.scene.scene import SupportSpec, Wear
+from ngwear.scene.scene import Support, Wear
 from ngwear.verify.cell_blocks import grid, held, on_edge, pull
 from ngwear.verify.no_loss import scene
 
@@ -85,7 +85,7 @@ def test_unknown_criteria_and_impossible_values_are_refused():
 
 def block(damage, cells=None):
     cells = grid(np.linspace(0, 3, 7), np.linspace(0, 2, 5)) if cells is None else cells
-    return held(cells, RUBBER, (SupportSpec(edges=("bottom", "top")),), damage)
+    return held(cells, RUBBER, (Support(edges=("bottom", "top")),), damage)
 
 
 def test_stresses_of_a_homogeneous_deformation_are_cauchys():

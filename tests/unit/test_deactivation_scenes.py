@@ -18,7 +18,7 @@ from ngwear.materials import NeoHooke
 from ngwear.scene.deactivation import Deactivation, DistortionFilter
 from ngwear.scene.program import Program
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import SupportSpec
+from ngwear.scene.scene import Support
 from ngwear.verify.cell_blocks import grid, held
 from ngwear.verify.material_book import torn_scene
 from ngwear.verify.no_loss import scene
@@ -140,14 +140,14 @@ BLOCK = grid(np.linspace(0, 3, 7), np.linspace(0, 2, 5))
 
 def test_a_part_torn_off_its_support_is_reported():
     damage = MaximumPrincipalStress(critical=1.0)
-    state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), damage)
+    state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), damage)
     with pytest.raises(GeometryError, match=r"held or loaded by nothing: nothing of the edges \['bottom'\] is left"):
         lost_elements.lose(state, BLOCK, np.arange(24) < 6, Fate.TORN)
 
 
 def test_a_support_of_which_something_is_left_holds_only_there():
     damage = MaximumPrincipalStress(critical=1.0)
-    state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), damage)
+    state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), damage)
     lost_elements.lose(state, BLOCK, np.arange(24) < 4, Fate.TORN)
     contour = state.contour
     on = contour.on(("bottom",))
@@ -194,7 +194,7 @@ def test_a_run_that_loses_too_much_gives_up_with_the_state_before(monkeypatch, t
 def test_what_a_wall_gains_or_loses_as_its_ends_are_merged_is_in_the_book(sinks):
     """Surface points beside a pit sink along its wall; beneath them there is its floor."""
     pit = BLOCK.without(np.arange(24) == 20, Fate.TORN)
-    state = held(pit, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), NOTHING)
+    state = held(pit, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), NOTHING)
     outline, points = state.contour, state.contour.points.copy()
     points[(points[:, 1] == 2.0) & np.isin(points[:, 0], (1.0, 1.5)), 1] -= sinks
     lost_elements.follow(state, outline, points)
@@ -211,7 +211,7 @@ def test_wear_that_reaches_a_hole_opens_it(places):
     """A hole lies in the second layer, and the surface above it sinks to one of its corners, or to both."""
     holed = BLOCK.without(np.arange(24) == 14, Fate.TORN)
     assert len(holed.holes()) == 4
-    state = held(holed, NeoHooke(shear=1.0, bulk_modulus=20.0), (SupportSpec(edges=("bottom",)),), NOTHING)
+    state = held(holed, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), NOTHING)
     outline, points = state.contour, state.contour.points.copy()
     points[(points[:, 1] == 2.0) & np.isin(points[:, 0], places), 1] -= 0.45
     lost_elements.follow(state, outline, points)

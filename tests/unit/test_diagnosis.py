@@ -3,11 +3,11 @@
 import ngsolve as ng
 import pytest
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.diagnosis import diagnosis
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance
 from ngwear.errors import ConvergenceError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
@@ -22,7 +22,7 @@ LID = Plane(point=(0.0, 1.0), normal_vector=(0.0, -1.0))
 def pressed(rectangle, supports, *, surface=LID, friction=0.0, kinematics=None, travel=1e-3):
     """A block 2 x 1 with a surface above that a force presses on."""
     body = meshed(rectangle(2.0, 1.0), 0.25)
-    contact = Contact("lid", ("top",), surface, modulus=1.0, force_controlled=True)
+    contact = OutlineContact("lid", ("top",), surface, modulus=1.0, force_controlled=True)
     terms = [Elasticity(RUBBER), contact]
     if friction:
         terms.append(FullSliding(contact, friction))
@@ -35,8 +35,8 @@ def pressed(rectangle, supports, *, surface=LID, friction=0.0, kinematics=None, 
     ("held", "missing"),
     [
         ([], "along x and along y:"),
-        ([Support(("bottom",), x=False)], "along x:"),
-        ([Support(("bottom",), y=False)], "along y:"),
+        ([FixedEdges(("bottom",), x=False)], "along x:"),
+        ([FixedEdges(("bottom",), y=False)], "along y:"),
     ],
 )
 def test_the_direction_that_nothing_holds_is_named(rectangle, held, missing):
@@ -60,19 +60,19 @@ def test_axisymmetric_part_can_slide_along_its_axis_only(rectangle):
 
 
 def test_a_surface_that_touches_nothing_is_named(rectangle):
-    problem = pressed(rectangle, [Support(("bottom",))], travel=-0.5)
+    problem = pressed(rectangle, [FixedEdges(("bottom",))], travel=-0.5)
     with pytest.raises(ConvergenceError, match="surface 'lid' under force touches nothing"):
         advance(problem, {"lid force [N]": 0.5})
 
 
 def test_a_part_that_is_held_and_touched_gets_no_advice(rectangle):
-    problem = pressed(rectangle, [Support(("bottom",))])
+    problem = pressed(rectangle, [FixedEdges(("bottom",))])
     advance(problem, {"lid force [N]": 0.5})
     assert diagnosis(problem) == ""
 
 
 def test_a_surface_that_creases_is_said_with_its_place_and_numbers(rectangle):
-    problem = pressed(rectangle, [Support(("bottom",))], friction=0.5)
+    problem = pressed(rectangle, [FixedEdges(("bottom",))], friction=0.5)
     contact = problem.terms[1]
     problem.fields["displacement"].Set(ng.CF((-0.4 * ng.x, 0.6 * ng.y)))
     problem.fields[contact.pressure_name].Set(2.0, definedon=problem.body.boundary(("top",)))
@@ -85,7 +85,7 @@ def test_a_surface_that_creases_is_said_with_its_place_and_numbers(rectangle):
 
 
 def test_friction_beyond_steady_sliding_is_said_with_its_margin(rectangle):
-    problem = pressed(rectangle, [Support(("bottom",))], friction=1.5)
+    problem = pressed(rectangle, [FixedEdges(("bottom",))], friction=1.5)
     _, contact, friction = problem.terms
     problem.fields[contact.pressure_name].Set(2.0, definedon=problem.body.boundary(("top",)))
     assert friction.margin() == pytest.approx(2 - 1.5**2 * 2.0, rel=1e-9)

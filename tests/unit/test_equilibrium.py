@@ -4,16 +4,16 @@ import pytest
 from netgen.geom2d import unit_square
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE, DirectSolver
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, solve
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
@@ -82,11 +82,11 @@ def pressed(rectangle, *, held=("bottom",), friction=0.0, force_controlled=False
     """A block with a plane above its top, ready to be pressed down by 0.1 mm."""
     body = meshed(rectangle(2.0, 1.0), 0.5)
     plane = Plane(point=(0.0, 1.0), normal_vector=(0.0, -1.0))
-    contact = Contact("lid", ("top",), plane, modulus=1.0, force_controlled=force_controlled)
+    contact = OutlineContact("lid", ("top",), plane, modulus=1.0, force_controlled=force_controlled)
     terms = [Elasticity(RUBBER), contact]
     if friction:
         terms.append(FullSliding(contact, friction))
-    supports = [Support(held, x=x)] if held else []
+    supports = [FixedEdges(held, x=x)] if held else []
     return Problem(body, PlaneStrain(), terms, supports=supports), contact
 
 
@@ -172,11 +172,11 @@ def test_force_is_carried_by_a_curved_outline(rectangle):
     arc = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     corners = np.zeros(13, dtype=bool)
     corners[[0, -1]] = True
-    dome = Contour(arc, ("dome",) * 12 + ("foot",), corners)
+    dome = Outline(arc, ("dome",) * 12 + ("foot",), corners)
     plane = Plane(point=(0.0, 1.0), normal_vector=(0.0, -1.0))
-    contact = Contact("lid", ("dome",), plane, modulus=1.0, force_controlled=True)
+    contact = OutlineContact("lid", ("dome",), plane, modulus=1.0, force_controlled=True)
     body = meshed(dome, 0.3)
-    problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), contact], supports=[Support(("foot",))])
+    problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), contact], supports=[FixedEdges(("foot",))])
     problem.fields[contact.travel_name].vec[:] = 0.02
     advance(problem, {"lid force [N]": 0.2})
     assert contact.force()[1] == pytest.approx(-0.2, rel=1e-7)

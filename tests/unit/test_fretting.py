@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.plots.fretting import draw_scars
 from ngwear.surfaces import Cylinder, Plane, Sphere, WornProfile
@@ -61,11 +61,13 @@ def test_a_ball_has_no_profile():
 def block_under_cylinder(counter):
     """A block of 2 x 1 mm under a cylinder of 4 mm, 0.05 N/mm, with friction."""
     x = np.linspace(-0.5, 0.5, 26)
-    body = meshed(Contour.rectangle((-1.0, 1.0), (0.0, 1.0)), 0.3, np.stack([x, 0 * x + 1.0], axis=1), 0.04)
+    body = meshed(Outline.rectangle((-1.0, 1.0), (0.0, 1.0)), 0.3, np.stack([x, 0 * x + 1.0], axis=1), 0.04)
     cylinder = Cylinder(centre=(0.0, 5.0), radius=4.0)
-    contact = Contact("roller", ("top",), cylinder, force_controlled=True, slides=True, counter=counter, modulus=1.0)
+    contact = OutlineContact(
+        "roller", ("top",), cylinder, force_controlled=True, slides=True, counter=counter, modulus=1.0
+    )
     friction, elasticity = FullSliding(contact, 0.5), Elasticity(RUBBER)
-    problem = Problem(body, PlaneStrain(), [elasticity, contact, friction], supports=[Support(("bottom",))])
+    problem = Problem(body, PlaneStrain(), [elasticity, contact, friction], supports=[FixedEdges(("bottom",))])
     problem.fields[contact.travel_name].vec[0] = 0.01 if counter is None else 0.01 + counter.at(np.zeros(1)).item()
     problem.set_loads({"roller slip": 0.0})
     advance(problem, {"roller force [N]": 0.05})

@@ -6,8 +6,8 @@ import pytest
 from ngwear.errors import GeometryError
 from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.layers import layered
-from ngwear.geometry.outline import Contour
-from ngwear.geometry.outline_files import read_contour
+from ngwear.geometry.outline import Outline
+from ngwear.geometry.outline_files import read_outline
 
 OPTIONS = {"depth": 0.3, "edge": 0.1, "coarse": 0.5, "grading": 0.3}
 
@@ -23,7 +23,7 @@ def hill(height=0.2):
     points = np.vstack([[(0, 0), (3, 0)], top])
     corners = np.zeros(len(points), dtype=bool)
     corners[[0, 1, 2, -1]] = True
-    return Contour(points, ("bottom", "right", *["east"] * 15, *["west"] * 15, "left"), corners)
+    return Outline(points, ("bottom", "right", *["east"] * 15, *["west"] * 15, "left"), corners)
 
 
 @pytest.mark.parametrize("rows", [1, 3, 6])
@@ -64,7 +64,7 @@ def test_layers_beside_the_worn_edges_inside_the_section_are_no_outline(rectangl
     """The worn edge is a part of a side: the layers' flanks lie inside, triangles beside them."""
     x = [4.0, 3.0, 1.0, 0.0]
     points = np.array([(0, 0), (4, 0), *[(a, 2) for a in x]], dtype=float)
-    contour = Contour(points, ("bottom", "right", "free", "worn", "free", "left"), np.ones(6, dtype=bool))
+    contour = Outline(points, ("bottom", "right", "free", "worn", "free", "left"), np.ones(6, dtype=bool))
     cells = layered(contour, ("worn",), **OPTIONS)
     assert cells.quads.sum() == 20 * 3
     assert cells.area == pytest.approx(8.0, rel=1e-12)
@@ -75,7 +75,7 @@ def test_an_edge_that_overhangs_is_refused_with_the_place():
     points = np.array([(0, 0), (4, 0), (4, 2), (2.0, 2), (2.5, 1.5), (1.5, 1.5), (0, 2)], dtype=float)
     names = ("bottom", "right", "top", "top", "top", "top", "left")
     with pytest.raises(GeometryError, match=r"\['top'\] overhang at \[2\.\d*, \d"):
-        layered(Contour(points, names, np.ones(7, dtype=bool)), ("top",), **OPTIONS)
+        layered(Outline(points, names, np.ones(7, dtype=bool)), ("top",), **OPTIONS)
 
 
 def test_layers_thicker_than_the_side_is_long_are_refused(rectangle):
@@ -91,7 +91,7 @@ def test_edges_not_in_one_piece_are_refused(rectangle, edges):
 
 def test_layers_that_leave_the_section_between_its_sides_are_refused():
     """The shipped seal's worn face ends within its lower side: nothing beside the layers would stop them."""
-    contour = read_contour(Path(__file__).parents[2] / "geometries" / "torn_seal" / "contour.toml")
+    contour = read_outline(Path(__file__).parents[2] / "geometries" / "torn_seal" / "contour.toml")
     edges = ("heel", "left ridges", "lip", "right ridges", "sealed face")
     with pytest.raises(GeometryError, match=r"layers of 3\.9 mm leave the section at .*: take fewer"):
         layered(contour, edges, depth=3.9, edge=0.1, coarse=0.3, grading=0.35)

@@ -5,10 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance
 from ngwear.error_estimates.coarser_runs import stated
 from ngwear.error_estimates.cost import cost
@@ -16,7 +16,7 @@ from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.error_estimates.run_to_error import at_level
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.plots.wear import history_figure
@@ -24,7 +24,7 @@ from ngwear.results.quantities_of_interest import LEAKS, reading
 from ngwear.results.recorder import LEAK, Recorder
 from ngwear.results.result_file import read_result
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import FluidSpec
+from ngwear.scene.scene import Fluid
 from ngwear.scene.toml_values import record
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
@@ -42,12 +42,12 @@ def block(tmp_path_factory):
 
 def test_the_way_that_is_closed_by_less_leaks_first():
     """A block on a plate, and a tilted plate on its top: that presses harder on the fluid's way than the lower one."""
-    lower = Contact("lower", ("bottom",), Plane(point=(0.0, 0.0), normal_vector=(0.0, 1.0)), modulus=1.0)
+    lower = OutlineContact("lower", ("bottom",), Plane(point=(0.0, 0.0), normal_vector=(0.0, 1.0)), modulus=1.0)
     tilted = Plane(point=(2.0, 0.9), normal_vector=(0.05, -1.0))
-    upper = Contact("upper", ("top",), tilted, modulus=1.0)
+    upper = OutlineContact("upper", ("top",), tilted, modulus=1.0)
     fluid = FluidPressure(("bottom", "right", "top"), ("right",), (lower, upper))
-    body = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), 0.25)
-    held = [Support(("left",), y=False)]
+    body = meshed(Outline.rectangle((0.0, 2.0), (0.0, 1.0)), 0.25)
+    held = [FixedEdges(("left",), y=False)]
     problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), lower, upper, fluid], supports=held)
     upper.load.Set(-0.2)
     advance(problem, {"upper approach [mm]": 0.0})
@@ -57,10 +57,10 @@ def test_the_way_that_is_closed_by_less_leaks_first():
 
 
 def test_a_way_without_contact_holds_nothing():
-    lower = Contact("lower", ("bottom",), Plane(point=(0.0, 0.1), normal_vector=(0.0, 1.0)), modulus=1.0)
+    lower = OutlineContact("lower", ("bottom",), Plane(point=(0.0, 0.1), normal_vector=(0.0, 1.0)), modulus=1.0)
     fluid = FluidPressure(("bottom", "right", "top"), ("right",), (lower,))
-    body = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), 0.25)
-    held = [Support(("left",), y=False), Support(("top",), x=False)]
+    body = meshed(Outline.rectangle((0.0, 2.0), (0.0, 1.0)), 0.25)
+    held = [FixedEdges(("left",), y=False), FixedEdges(("top",), x=False)]
     problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), lower, fluid], supports=held)
     lower.load.Set(-0.1)
     advance(problem, {"lower approach [mm]": 0.0})
@@ -127,10 +127,10 @@ def test_meshes_are_fine_where_the_fluid_meets_a_contact_that_is_not_followed():
 def test_a_scene_file_asks_for_it():
     text = (Path(__file__).parents[2] / "geometries" / "rod_seal" / "scene.toml").read_text(encoding="utf-8")
     data = tomllib.loads(text)["fluid"]
-    assert not record(FluidSpec, "fluid", data).leak_pressure
-    assert record(FluidSpec, "fluid", data | {"leak_pressure": True}).leak_pressure
+    assert not record(Fluid, "fluid", data).leak_pressure
+    assert record(Fluid, "fluid", data | {"leak_pressure": True}).leak_pressure
     with pytest.raises(SceneError, match=r"fluid\.leak_pressure = 1"):
-        record(FluidSpec, "fluid", data | {"leak_pressure": 1})
+        record(Fluid, "fluid", data | {"leak_pressure": 1})
 
 
 def test_a_study_reads_it_whether_it_is_asked_for_or_not(monkeypatch):

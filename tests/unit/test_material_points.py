@@ -6,7 +6,7 @@ from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import MooneyRivlin
 from ngwear.verify.builders import meshed, quarter_ring
 
@@ -41,7 +41,7 @@ def test_points_give_what_ngsolve_gives(kinematics, order, moved):
     if moved:
         before = body.contour
         shift = np.outer(np.sin(before.points[:, 0]), [0.02, 0.01]) * ~before.corners[:, None]
-        body.move_to(Contour(before.points + shift, before.names, before.corners))
+        body.move_to(Outline(before.points + shift, before.names, before.corners))
     problem.fields[DISPLACEMENT].Set(ng.CF((0.2 * ng.sin(ng.x + ng.y), 0.1 * ng.cos(ng.x * ng.y))))
     problem.fields[VOLUMETRIC_STRESS].Set(ng.sin(ng.x))
     form = symbolic(problem, elasticity)

@@ -11,14 +11,14 @@ from conftest import ARMS, REMEMBERS, edited
 from ngwear.cli import OK, main
 from ngwear.equilibrium.linear import has_pardiso
 from ngwear.errors import ConvergenceError, SceneError
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import Wearing
 from ngwear.materials import WLF, NeoHooke, PronySeries, Stiffened
 from ngwear.materials.library import filled_rubber
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import SupportSpec
+from ngwear.scene.scene import Support
 from ngwear.surfaces import Plane
 
 SHIFT = 'shift = { law = "wlf", c1 = 17.44, c2 = 51.6, reference = 296.15 }'
@@ -31,7 +31,7 @@ def arms_text(*changes):
 
 
 def lifted(contour, height):
-    return Contour(contour.points + np.array([0.0, height]), contour.names, contour.corners)
+    return Outline(contour.points + np.array([0.0, height]), contour.names, contour.corners)
 
 
 @pytest.fixture
@@ -219,7 +219,7 @@ def test_forces_of_a_ring_with_memory_are_in_balance(remembering):
         remembering,
         axisymmetric=True,
         contacts=(replace(remembering.contacts[0], surface=Plane.bore(9.9), force=None),),
-        supports=(SupportSpec(edges=("left",), y=False),),
+        supports=(Support(edges=("left",), y=False),),
         contour=lifted(remembering.contour, 3.0),
     )
     stepper = Stepper(ring)

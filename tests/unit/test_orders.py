@@ -13,7 +13,7 @@ from ngwear.equilibrium.state_transfer import carry
 from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.fields.displacements import displacements
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.mounting import unworn_body
 from ngwear.loop.run import run
 from ngwear.loop.stage import Stage
@@ -26,7 +26,7 @@ FIELDS = {1: ng.CF((0.1 * ng.x, 0.2 * ng.y)), 2: ng.CF((0.1 * ng.x**2, 0.2 * ng.
 
 
 def block(order, size):
-    body = meshed(Contour.rectangle((0.0, 2.0), (0.0, 1.0)), size)
+    body = meshed(Outline.rectangle((0.0, 2.0), (0.0, 1.0)), size)
     return Problem(body, PlaneStrain(), [Elasticity(RUBBER, order=order)], order=order)
 
 

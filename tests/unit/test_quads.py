@@ -6,17 +6,17 @@ from ngsolve.meshes import MakeHexMesh
 from test_material_points import MATERIAL, symbolic
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.newton import NewtonOptions
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.errors import MeshError
 from ngwear.fields.element_shapes import Cells
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry import nodal
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Cylinder
 from ngwear.verify import convergence, locking
@@ -164,7 +164,7 @@ def test_a_biquadratic_displacement_is_set_exactly_on_parallelograms():
 @by_mesh
 def test_an_affine_displacement_of_the_outline_makes_a_homogeneous_stress(halved):
     body = blocks.Block(5, 4, image=blocks.wavy, halved=halved)
-    at = problem(body, supports=[Support(blocks.SIDES)])
+    at = problem(body, supports=[FixedEdges(blocks.SIDES)])
     slope = np.array([[0.05, 0.12], [-0.04, -0.03]])
     set_displacement(at, lambda x: x @ slope.T)
     exact = at.fields[DISPLACEMENT].vec.FV().NumPy().copy()
@@ -243,12 +243,12 @@ def test_elements_of_another_type_are_refused():
         Cells(MakeHexMesh(nx=1, ny=1, nz=1), 2)
 
 
-def rolled(body) -> Contact:
+def rolled(body) -> OutlineContact:
     """A roller under force that slides on a bonded block."""
     roller = Cylinder(centre=(0.0, 4.0), radius=2.0)
-    contact = Contact("roller", ("top",), roller, force_controlled=True, modulus=1.0)
+    contact = OutlineContact("roller", ("top",), roller, force_controlled=True, modulus=1.0)
     terms = [Elasticity(NeoHooke(shear=1.0, bulk_modulus=1000.0)), contact, FullSliding(contact, 0.3)]
-    at = Problem(body, PlaneStrain(), terms, supports=[Support(("bottom",))])
+    at = Problem(body, PlaneStrain(), terms, supports=[FixedEdges(("bottom",))])
     at.fields[contact.travel_name].vec[0] = 0.05
     advance(at, {"roller force [N]": 0.5, "roller slip": 1.0})
     assert residual(at)[at.part(DISPLACEMENT)] == pytest.approx(0.0, abs=1e-6)
@@ -258,7 +258,7 @@ def rolled(body) -> Contact:
 @pytest.fixture(scope="module")
 def peak_on_triangles():
     seeds = np.column_stack([np.linspace(-0.6, 0.6, 25), np.full(25, 2.0)])
-    return rolled(meshed(Contour.rectangle((-2.0, 2.0), (0.0, 2.0)), 0.3, seeds, 0.05)).peak()
+    return rolled(meshed(Outline.rectangle((-2.0, 2.0), (0.0, 2.0)), 0.3, seeds, 0.05)).peak()
 
 
 @by_mesh

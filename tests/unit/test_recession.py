@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import recede, refuse_worn_through, tidied
 from ngwear.geometry.sizing import SizeField
 
@@ -83,7 +83,7 @@ def finned(rectangle, width, height):
     points += [(x1, 2 + v) for v in y] + [(x0, 2 + v) for v in y[::-1]] + [(0, 2)]
     names = ["bottom", "right", "top"] + ["fin"] * (2 * n + 1) + ["top", "left"]
     corners = [True] * 3 + [True] + [False] * (n - 1) + [True, True] + [False] * (n - 1) + [True, True]
-    return Contour(np.array(points, dtype=float), tuple(names), np.array(corners))
+    return Outline(np.array(points, dtype=float), tuple(names), np.array(corners))
 
 
 def test_outline_that_crosses_itself_is_healed_to_a_simple_one(rectangle):
@@ -93,7 +93,7 @@ def test_outline_that_crosses_itself_is_healed_to_a_simple_one(rectangle):
     narrow = block.points.copy()
     above = narrow[:, 1] > 2
     narrow[above, 0] = 2 + (narrow[above, 0] - 2) * (1.05 - (narrow[above, 1] - 2) / 0.5)
-    block = Contour(narrow, block.names, block.corners)
+    block = Outline(narrow, block.names, block.corners)
     share = np.zeros(len(block))
     inner = block.on(("fin",)) & np.roll(block.on(("fin",)), 1)
     share[inner] = 0.03 * 0.5 * (block.lengths + np.roll(block.lengths, 1))[inner]
@@ -138,7 +138,7 @@ def test_a_thin_sheet_that_loses_a_fifth_is_not_worn_through(rectangle):
     sheet = rectangle(1.0, 0.1)
     points = np.insert(sheet.points, 2, [1.0, 0.085], axis=0)
     names = (*sheet.names[:2], sheet.names[1], *sheet.names[2:])
-    sheet = Contour(points, names, np.insert(sheet.corners, 2, False))
+    sheet = Outline(points, names, np.insert(sheet.corners, 2, False))
     area = np.where([p[1] > 0.09 for p in sheet.points], 0.02 * 0.5, 0.0)
     worn = recede(sheet, area, ("top",))
     assert worn.area == pytest.approx(0.08, rel=1e-3)

@@ -5,15 +5,15 @@ import itertools
 import numpy as np
 import pytest
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.diagnosis import diagnosis
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import ConvergenceError
 from ngwear.fields.kinematics import PlaneStrain
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.surfaces import Plane
 from ngwear.verify import sliding_roller
@@ -55,12 +55,12 @@ def test_wave_on_a_sliding_surface(stretch, mu, p):
 
 def test_margin_of_a_block_in_shear():
     """A block held at the bottom, pressed and rubbed by a plane: 2 - mu^2 p/G where it is not stretched."""
-    block = meshed(Contour.rectangle((0.0, 8.0), (0.0, 0.2)), 0.1)
+    block = meshed(Outline.rectangle((0.0, 8.0), (0.0, 0.2)), 0.1)
     plane = Plane(point=(0.0, 0.2), normal_vector=(0.0, -1.0))
-    contact = Contact("plane", ("top",), plane, force_controlled=True, modulus=1.0)
+    contact = OutlineContact("plane", ("top",), plane, force_controlled=True, modulus=1.0)
     friction = FullSliding(contact, 0.5)
     rubber = NeoHooke(shear=1.0, bulk_modulus=1e3)
-    problem = Problem(block, PlaneStrain(), [Elasticity(rubber), contact, friction], supports=[Support(("bottom",))])
+    problem = Problem(block, PlaneStrain(), [Elasticity(rubber), contact, friction], supports=[FixedEdges(("bottom",))])
     assert np.isnan(friction.margin())
     problem.fields[contact.travel_name].vec[0] = 1e-3
     advance(problem, {"plane force [N]": 4.0}, StepOptions(first=0.25))

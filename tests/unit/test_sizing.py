@@ -6,7 +6,7 @@ import pytest
 from ngwear.errors import MeshError
 from ngwear.geometry import section
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import recede
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
@@ -86,7 +86,7 @@ def test_name_gate_names_the_edge():
 
 
 def test_angle_gate_names_angle_and_place():
-    needle = Contour(np.array([[0, 0], [3, 0], [3, 0.3]], dtype=float), ("a", "b", "c"), np.ones(3, dtype=bool))
+    needle = Outline(np.array([[0, 0], [3, 0], [3, 0.3]], dtype=float), ("a", "b", "c"), np.ones(3, dtype=bool))
     with pytest.raises(MeshError, match=r"element at \[.*angle of 5\.\d°, below 12"):
         Body(needle, SizeField(*NOWHERE, 0.5))
 

@@ -2,19 +2,19 @@
 
 import numpy as np
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import Accuracy, ContactSpec, Scene, SupportSpec
+from ngwear.scene.scene import Accuracy, Contact, Scene, Support
 from ngwear.surfaces import Plane
 
 
@@ -26,10 +26,10 @@ def test_surface_under_force_finds_several_ridges_of_one_height():
     plane = Plane(point=(0.0, 1.05), normal_vector=(0.0, -1.0))
     scene = Scene(
         name="three ridges",
-        contour=Contour(np.array(outline), names, np.ones(len(outline), dtype=bool)),
+        contour=Outline(np.array(outline), names, np.ones(len(outline), dtype=bool)),
         material=NeoHooke(shear=1.0, bulk_modulus=100.0),
-        contacts=(ContactSpec(name="lid", edges=("top",), surface=plane, force=0.2, refine=True),),
-        supports=(SupportSpec(edges=("bottom",)),),
+        contacts=(Contact(name="lid", edges=("top",), surface=plane, force=0.2, refine=True),),
+        supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(Stroke(name="stroke", travel=1.0),), strokes=1),
         accuracy=Accuracy(patch=0.05, coarse=0.3, mounting=0.05),
     )
@@ -43,9 +43,11 @@ def test_scene_without_friction_has_the_unknowns_and_the_solver_of_elasticity_an
     scene = read_scene(write_sheet(tmp_path, ("friction = 0.1", "friction = 0.0")))
     (spec,) = scene.contacts
     body = Body(scene.contour, mounting_field(scene))
-    contact = Contact(spec.name, spec.edges, spec.surface, force_controlled=True, modulus=scene.rubber.shear_modulus)
+    contact = OutlineContact(
+        spec.name, spec.edges, spec.surface, force_controlled=True, modulus=scene.rubber.shear_modulus
+    )
     terms = [Elasticity(scene.rubber), contact]
-    by_hand = Problem(body, PlaneStrain(), terms, supports=[Support(("bottom",))])
+    by_hand = Problem(body, PlaneStrain(), terms, supports=[FixedEdges(("bottom",))])
     made = Stage(scene, body)
     assert made.frictions == {}
     assert made.problem.names == by_hand.names

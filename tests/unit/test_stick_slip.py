@@ -3,17 +3,17 @@
 import numpy as np
 import pytest
 
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.contact_patch import PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.newton import solve
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain, Solid
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.geometry.sheet import Sheet
 from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Plane, Sphere
@@ -27,11 +27,11 @@ STEPS = StepOptions(first=0.25)
 def pressed(kinematics, friction, *, force=0.8):
     """A block 4 x 2 under a plane that is pressed on by a force, N/mm or N."""
     inner = 10.0 if kinematics.axisymmetric else 0.0
-    body = meshed(Contour.rectangle((0.0, 4.0), (inner, inner + 2.0)), 0.4)
+    body = meshed(Outline.rectangle((0.0, 4.0), (inner, inner + 2.0)), 0.4)
     lid = Plane(point=(0.0, inner + 2.0), normal_vector=(0.0, -1.0))
-    contact = Contact("lid", ("top",), lid, force_controlled=True, modulus=RUBBER.shear_modulus)
+    contact = OutlineContact("lid", ("top",), lid, force_controlled=True, modulus=RUBBER.shear_modulus)
     term = friction(contact, MU)
-    problem = Problem(body, kinematics, [Elasticity(RUBBER), contact, term], supports=[Support(("bottom",))])
+    problem = Problem(body, kinematics, [Elasticity(RUBBER), contact, term], supports=[FixedEdges(("bottom",))])
     problem.fields[contact.travel_name].vec[0] = 0.02
     scale = 2 * np.pi * inner if kinematics.axisymmetric else 1.0
     load = {"lid force [N]": force * scale}
@@ -129,7 +129,7 @@ def test_ball_on_a_sheet_slips_from_its_rim_and_then_altogether():
     ball = Sphere(centre=(0.0, 0.0, 8.0), radius=5.0)
     contact = PatchContact("ball", ("top",), ball, modulus=RUBBER.shear_modulus)
     sticks = StickSlip(contact, MU)
-    problem = Problem(sheet, Solid(), [Elasticity(RUBBER), contact, sticks], supports=[Support(("bottom",))])
+    problem = Problem(sheet, Solid(), [Elasticity(RUBBER), contact, sticks], supports=[FixedEdges(("bottom",))])
     advance(problem, {"ball approach [mm]": 0.3}, STEPS)
     assert abs(sticks.force()[0]) < 0.02 * MU * contact.force()[2] * -1
     shares = []
@@ -143,4 +143,4 @@ def test_ball_on_a_sheet_slips_from_its_rim_and_then_altogether():
 
 def test_negative_coefficient_is_refused():
     with pytest.raises(SceneError, match=r"lid\.friction.*-0\.1.*at least 0"):
-        StickSlip(Contact("lid", ("top",), Plane(point=(0, 0), normal_vector=(0, 1)), modulus=1.0), -0.1)
+        StickSlip(OutlineContact("lid", ("top",), Plane(point=(0, 0), normal_vector=(0, 1)), modulus=1.0), -0.1)

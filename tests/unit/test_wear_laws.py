@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from ngwear.effects.coefficient import Coefficient
-from ngwear.effects.contact import Contact
+from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.pressure_wear import PressureWear
-from ngwear.equilibrium.problem import Problem, Support
+from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import SceneError
 from ngwear.explanation.explain import explain
@@ -94,10 +94,10 @@ def test_bad_numbers_are_refused(build, place):
 @pytest.mark.parametrize("law", LAWS, ids=named)
 def test_tangent_at_equilibrium_holds_though_the_law_follows_the_state(law):
     body = meshed(CONTOUR, PATCH)
-    contact = Contact("plane", ("top",), SURFACE, modulus=RUBBER.shear_modulus)
+    contact = OutlineContact("plane", ("top",), SURFACE, modulus=RUBBER.shear_modulus)
     mu = Coefficient("plane", THIRION)
     contact.pressure_wear = PressureWear(law, modulus=RUBBER.shear_modulus, coefficient=mu)
-    supports = [Support(("bottom",))]  # so that the pressure varies along the top
+    supports = [FixedEdges(("bottom",))]  # so that the pressure varies along the top
     problem = Problem(body, PlaneStrain(), [Elasticity(RUBBER), contact], supports=supports)
     contact.compliance.Set(0.02)
     contact.load.Set(0.0)

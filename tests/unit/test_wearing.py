@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from ngwear.errors import MeshError
-from ngwear.geometry.outline import Contour
+from ngwear.geometry.outline import Outline
 from ngwear.loop.remeshing import _Moved
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import Wearing
@@ -60,7 +60,7 @@ def test_a_new_outline_keeps_the_shape_of_values():
     angle = np.linspace(0, 2 * np.pi, 41)[:-1]
     fine = np.linspace(0, 2 * np.pi, 67)[:-1]
     before, after = (
-        Contour(np.stack([np.cos(a), np.sin(a)], axis=1), ("rim",) * len(a), np.zeros(len(a), dtype=bool))
+        Outline(np.stack([np.cos(a), np.sin(a)], axis=1), ("rim",) * len(a), np.zeros(len(a), dtype=bool))
         for a in (angle, fine)
     )
     moved = _Moved(before, after)(np.stack([1 + np.cos(angle), np.zeros_like(angle)]))
