@@ -1,8 +1,14 @@
-"""What can go wrong, one class for each kind of remedy."""
+"""What can go wrong, one class for each kind of remedy, and the checks of what a scene is given."""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from dataclasses import MISSING, fields
+from numbers import Integral, Real
 from typing import Any
+
+LARGEST = 1e15  # of a number in a scene, in any of the units: more is a slip of the pen
 
 
 class NgwearError(Exception):
@@ -31,6 +37,63 @@ def require(ok: bool, place: str, value: object, remedy: str) -> None:
     """Raise SceneError for what stands at a place in the scene unless it is all right."""
     if not ok:
         raise SceneError(place, value, remedy)
+
+
+def check_fields(record: Any, place: str) -> None:
+    """Give the fields of a dataclass the types of their annotations: lists become tuples, whole numbers floats.
+
+    Fields of other types than text, names, numbers and switches, and those that have their default, stay as they are.
+
+    Raises
+    ------
+    SceneError
+        For a value of another type, or a number that is not finite.
+    """
+    for f in fields(record):
+        value = getattr(record, f.name)
+        if f.default is MISSING or value is not f.default:
+            object.__setattr__(record, f.name, typed(f"{place}.{f.name}", value, str(f.type)))
+
+
+def typed(place: str, value: Any, kind: str) -> Any:
+    """Return the value as the type that an annotation names, if it is one of those that a scene file can hold.
+
+    Raises
+    ------
+    SceneError
+        If it is of another type, or a number that is not finite.
+    """
+    if value is None and kind.endswith("| None"):
+        return None
+    for inner, one, example in _SEQUENCES:
+        if kind.startswith((f"Sequence[{inner}]", f"tuple[{inner}")):
+            if isinstance(value, str) or not isinstance(value, Sequence):
+                raise SceneError(place, value, f"must be a list of {one}, such as {example}")
+            return tuple(typed(f"{place}[{i}]", v, inner) for i, v in enumerate(value))
+    if kind.startswith("bool") and not isinstance(value, bool):
+        raise SceneError(place, value, "must be true or false")
+    if kind in ("str", "str | None") and not isinstance(value, str):
+        raise SceneError(place, value, "must be a text in quotes")
+    if kind in ("int", "int | None"):
+        if isinstance(value, bool) or not isinstance(value, Integral):
+            raise SceneError(place, value, "must be a whole number")
+        if not abs(int(value)) < LARGEST:
+            raise SceneError(place, value, f"must be a whole number below {LARGEST:g}")
+        return int(value)
+    if kind in ("float", "float | None"):
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise SceneError(place, value, "must be a number")
+        if not (math.isfinite(value) and abs(value) < LARGEST):
+            raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
+        return float(value)
+    return value
+
+
+_SEQUENCES = (
+    ("str", "names", '["lip"]'),
+    ("int", "whole numbers", "[50, 100]"),
+    ("float", "numbers", "[3.0, 10.0]"),
+)
 
 
 class GeometryError(NgwearError):

@@ -140,7 +140,7 @@ def _runner(
     """How a setting is measured: by the sweep's processes, or from the folder."""
     if isinstance(scene, Scene):
         scene = replace(
-            scene, contour=replace(scene.contour)
+            scene, part=replace(scene.part, outline=replace(scene.part.outline))
         )  # without what it has worked out: the digest is the data's
     ladders = tuple(knob.ladder for knob in chosen)
 

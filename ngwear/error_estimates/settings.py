@@ -50,7 +50,7 @@ def knobs(scene: AnyScene) -> tuple[Knob, ...]:
     found += _orders(scene)
     if scene.arms is not None:
         found.append(_time_step(scene))
-    if scene.prony is not None:
+    if scene.part.prony is not None:
         found += _arms(scene.accuracy.folding_error, lambda tolerance: _foldings_of_wear(scene, tolerance))
     return tuple(found)
 

@@ -15,8 +15,9 @@ from ngwear.loop.mounting import mount, unworn_body
 from ngwear.loop.refinement import wanted_size
 from ngwear.loop.stage import Stage
 from ngwear.loop.stepper import MAY_COME
+from ngwear.scene.contact import Contact
 from ngwear.scene.program import Stroke
-from ngwear.scene.scene import Contact, Scene
+from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
 POINTS = 12  # of the background in each triangle

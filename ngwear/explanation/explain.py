@@ -10,8 +10,9 @@ from ngwear.explanation.assumptions import Assumed
 from ngwear.laws import Constant
 from ngwear.loop.element_sizes import chosen, laid_out
 from ngwear.loop.law_changes import friction_range
+from ngwear.scene.contact import Contact
 from ngwear.scene.deactivation import Deactivation
-from ngwear.scene.scene import Contact, Scene
+from ngwear.scene.scene import Scene
 from ngwear.wear.archard import critical_distance
 
 if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
@@ -49,7 +50,7 @@ def explain(
     assumed, across = assumed or Assumed(), scene.accuracy.across
     scene = laid_out(scene)
     stage = Stage(scene, unworn_body(scene, across))
-    problem, material = stage.problem, scene.material
+    problem, material = stage.problem, scene.part.material
     brought = costs(problem, _owners(scene, problem.names))
     pressing = press(scene, stage, on_mount=on_mount)
     if across is not None and pressing.states:
@@ -78,7 +79,7 @@ def explain(
             / critical,
             **_memory_numbers(scene),
         },
-        **({"arms of the memory": _arms(scene)} if scene.prony is not None else {}),
+        **({"arms of the memory": _arms(scene)} if scene.part.prony is not None else {}),
         "absent": {name: verdict.as_dict() for name, verdict in absent.items()},
         "assumed": assumed.told(),
     }
@@ -86,7 +87,7 @@ def explain(
 
 def _present(scene: Scene) -> dict[str, str]:
     """Each effect that the scene has, in words."""
-    present = {"hyperelasticity": type(scene.material).__name__}
+    present = {"hyperelasticity": type(scene.part.material).__name__}
     present |= {f"contact '{c.name}'": f"edges {', '.join(c.edges)}" for c in scene.contacts}
     present |= {f"friction at '{c.name}'": _friction_in_words(scene, c) for c in scene.contacts if c.friction_law}
     if scene.fluid is not None:
@@ -105,7 +106,7 @@ def _present(scene: Scene) -> dict[str, str]:
         for c in scene.contacts
         if c.counter_wear_rate > 0
     }
-    if scene.prony is not None:
+    if scene.part.prony is not None:
         present["memory"] = _memory_in_words(scene)
     return present
 
@@ -148,7 +149,7 @@ def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
     if scene.worn_edges:  # area over way, twice, and depth, of each contact and stroke; rates of the states
         sizes = 3 * strokes * len(scene.contacts) * outline + strokes * stage.problem.space.ndof
         found["wear"] = 8 * sizes / MEGABYTE
-    if scene.prony is not None:
+    if scene.part.prony is not None:
         points = history_points(stage, pressing.states) if scene.arms is not None else 0
         found["memory"] = 8 * 4 * points * (len(scene.folding.kept.times) + strokes) / MEGABYTE
     return found
@@ -191,7 +192,7 @@ def _memory_in_words(scene: Scene) -> str:
 
 
 def _memory_numbers(scene: Scene) -> dict[str, float]:
-    if scene.prony is None:
+    if scene.part.prony is None:
         return {}
     folding, step = scene.folding, min(stroke.duration for stroke in scene.program.cycle)
     return {
@@ -208,7 +209,7 @@ def _arms(scene: Scene) -> dict[str, str]:
     """Each arm: what becomes of it, its stiffness, and Deborah's number of every kind of stroke."""
     folding = scene.folding
     told = {}
-    for time, ratio in zip(scene.prony.times, scene.prony.ratios, strict=True):
+    for time, ratio in zip(scene.part.prony.times, scene.part.prony.ratios, strict=True):
         deborah = {f"{time / stroke.duration:.3g}": None for stroke in scene.program.cycle}
         told[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {folding.fate(time)}"
     return told

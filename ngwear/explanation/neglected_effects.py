@@ -33,7 +33,7 @@ def left_out(scene: Scene, pressing: Pressing, *, remembers: bool, assumed: Assu
 
     frictions = [c for c in scene.contacts if c.friction_law is not None]
     sliding = [c for c in frictions if c.slides]
-    if scene.prony is None:
+    if scene.part.prony is None:
         found["viscosity"] = lambda: _viscosity(scene)
     if not remembers:
         found["stick-slip"] = lambda: _stick_slip(scene)
@@ -169,7 +169,7 @@ def _power(scene: Scene, groups: list[list[Strip]]) -> tuple[float, str]:
 
 def _adhesion(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     """By pull-off force over load of the strip with the highest pressure, as a clean, dry, smooth line contact."""
-    strip, modulus, work = _main(strips), scene.material.plane_strain_modulus, assumed.work_of_adhesion
+    strip, modulus, work = _main(strips), scene.part.material.plane_strain_modulus, assumed.work_of_adhesion
     radius = adhesion.hertz_radius(strip.load, strip.width / 2, modulus)
     pull = adhesion.line_pull_off(radius, modulus, work)
     share = pull / strip.load
@@ -186,9 +186,9 @@ def _adhesion(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
 
 
 def _inertia(scene: Scene, assumed: Assumed) -> Verdict:
-    modulus, density = scene.material.shear_modulus, assumed.rubber_density
+    modulus, density = scene.part.material.shear_modulus, assumed.rubber_density
     wave = inertia.wave_speed(modulus, density)
-    size = float((scene.contour.points.max(axis=0) - scene.contour.points.min(axis=0)).max())
+    size = float((scene.part.outline.points.max(axis=0) - scene.part.outline.points.min(axis=0)).max())
     starts = min(math.sqrt(inertia.LIMIT), inertia.SLOW * min(s.travel for s in scene.program.cycle) / size) * wave
     numbers = {"speed of shear waves [m/s]": 1e-3 * wave, "speed from which inertia counts [mm/s]": starts}
     speeds = [stroke.speed for stroke in scene.program.cycle if stroke.speed is not None]
@@ -209,7 +209,7 @@ def _inertia(scene: Scene, assumed: Assumed) -> Verdict:
 
 def _film(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     """By the film of a flooded soft line contact over the roughness, at the strip with the highest pressure."""
-    strip, modulus, oil = _main(strips), scene.material.plane_strain_modulus, assumed.oil_viscosity
+    strip, modulus, oil = _main(strips), scene.part.material.plane_strain_modulus, assumed.oil_viscosity
     radius = adhesion.hertz_radius(strip.load, strip.width / 2, modulus)
 
     def ratio(speed: float) -> float:
@@ -245,7 +245,7 @@ def _film(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
 
 def _friction(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     strip = _main(strips)
-    number = strip.pressure / scene.material.shear_modulus
+    number = strip.pressure / scene.part.material.shear_modulus
     words = (
         f"mean pressure over G is {number:.2g} at {_where(strip)}: shear stress over G is that times mu, which is 0.05 "
         f"to 0.3 with oil and up to above 1 dry; above {SHARE:g} friction bends the contact out of shape"

@@ -21,7 +21,7 @@ def laid_out(scene: Scene) -> Scene:
     accuracy = scene.accuracy
     if accuracy.patch is not None:
         return scene
-    size = float(np.ptp(scene.contour.points, axis=0).min())
+    size = float(np.ptp(scene.part.outline.points, axis=0).min())
     lengths = {"patch": MOUNTING * size, "mounting": MOUNTING * size, "coarse": COARSE * size}
     return replace(scene, accuracy=replace(accuracy, across=None, error=None, **lengths))
 

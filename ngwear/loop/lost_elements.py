@@ -40,7 +40,7 @@ def element_body(scene: Scene) -> ElementBody:
     accuracy, depth = scene.accuracy, scene.deactivation.depth
     sizes = {"edge": accuracy.patch, "coarse": accuracy.coarse, "grading": accuracy.grading}
     try:
-        return ElementBody(layered(scene.contour, scene.worn_edges, depth=depth, **sizes))
+        return ElementBody(layered(scene.part.outline, scene.worn_edges, depth=depth, **sizes))
     except GeometryError as error:
         raise SceneError("deactivation.depth", depth, f"no such layers fit the section: {error}") from None
 

@@ -12,7 +12,8 @@ from ngwear.effects.contact_profile import ContactProfile
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import SizeField, smoothed
 from ngwear.loop.stage import Stage
-from ngwear.scene.scene import Contact, Scene
+from ngwear.scene.contact import Contact
+from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -177,7 +178,7 @@ def _spanned(contour: Outline, profile: ContactProfile, near: NDArray[np.bool_])
 
 def unworn_outline(scene: Scene) -> Outline:
     """The scene's outline with points as near to each other as elements of its patch ask for."""
-    return smoothed(scene.contour, scene.worn_edges, 1.3 * scene.accuracy.patch)
+    return smoothed(scene.part.outline, scene.worn_edges, 1.3 * scene.accuracy.patch)
 
 
 def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
@@ -185,7 +186,7 @@ def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
 
     ``across`` is that of a scene whose lengths come from it.
     """
-    accuracy, contour = scene.accuracy, scene.contour
+    accuracy, contour = scene.accuracy, scene.part.outline
     curved = np.abs(contour.turning) > 1e-3
     mine = np.zeros(len(contour), dtype=bool)
     for spec in scene.followed:
@@ -201,7 +202,7 @@ def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
 
 def _nearest_place(scene: Scene, spec: Contact) -> Array:
     """Where the surface comes nearest to its edges, shape (1, 2)."""
-    contour = scene.contour
+    contour = scene.part.outline
     t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])
     places = contour.at(t)
     return places[[int(np.argmin(spec.surface.gap(*places.T)))]]

@@ -15,8 +15,9 @@ from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.body import Body
+from ngwear.scene.contact import Contact
 from ngwear.scene.program import Stroke
-from ngwear.scene.scene import Contact, Scene
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 
 if TYPE_CHECKING:  # an effect that the scene does not list is not even imported

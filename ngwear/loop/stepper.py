@@ -84,7 +84,8 @@ class Stepper:
         scene, accuracy = self.scene, self.scene.accuracy
         stage = Stage(scene, unworn_body(scene, self._across))
         cycles = scene.program.strokes / len(scene.program.cycle)
-        longest = min(scene.wear.max_jump, max(1, math.ceil(accuracy.longest_jump * cycles)))
+        most = scene.wear.max_jump or math.inf
+        longest = min(most, max(1, math.ceil(accuracy.longest_jump * cycles)))
         first = 1 if scene.deactivation is not None else max(1, longest // FIRST)  # what is pulled too hard tears
         control = JumpControl(accuracy.wear_error, depth=accuracy.depth_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
@@ -176,7 +177,7 @@ class Stepper:
             goal = min([m for m in self.scene.marks if m > state.strokes] + [program.strokes])
             left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
             wear = self.scene.wear
-            cycles = {"each": 1, "fixed": min(wear.max_jump, left), "jump": state.control.share(left)}[wear.step]
+            cycles = {"each": 1, "fixed": min(wear.max_jump or 1, left), "jump": state.control.share(left)}[wear.step]
             cycles = steady_cycles(self.scene, state.strokes, min(cycles, most))
             saved = state.saved()
             try:

@@ -16,7 +16,7 @@ from ngwear.geometry.outline import Outline, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.state import State
-from ngwear.scene.scene import Contact
+from ngwear.scene.contact import Contact
 from ngwear.wear.archard import worn_share
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
 from ngwear.wear.sliding_distance import Strokes

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 def fingerprint(scene: Scene) -> str:
     """Hash of a scene, to tell whether a folder belongs to it."""
-    contour = scene.contour
+    contour = scene.part.outline
     rest = [repr(getattr(scene, f.name)) for f in fields(scene) if f.name != "contour"]
     content = [contour.points.tobytes(), contour.corners.tobytes(), repr((contour.names, rest)).encode()]
     return hashlib.sha256(b"".join(content)).hexdigest()
@@ -51,8 +51,8 @@ def depths(before: Outline, after: Outline) -> Array:
 
 def measured_at(scene: Scene) -> Outline:
     """The scene's outline with points all along its straight worn edges: a depth is known where there is one."""
-    longest = float(np.ptp(scene.contour.points, axis=0).max()) / POINTS_ALONG
-    return divided(scene.contour, scene.worn_edges, longest)
+    longest = float(np.ptp(scene.part.outline.points, axis=0).max()) / POINTS_ALONG
+    return divided(scene.part.outline, scene.worn_edges, longest)
 
 
 @dataclass
@@ -311,9 +311,9 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         h5.attrs["units"] = json.dumps(UNITS)
         h5.attrs["summary"] = json.dumps(summary)
         outline = h5.create_group("outline")
-        outline["points [mm]"] = scene.contour.points
-        outline["edges"] = np.array(scene.contour.names, dtype=h5py.string_dtype())
-        outline.attrs["provenance"] = scene.contour.provenance
+        outline["points [mm]"] = scene.part.outline.points
+        outline["edges"] = np.array(scene.part.outline.names, dtype=h5py.string_dtype())
+        outline.attrs["provenance"] = scene.part.outline.provenance
         h5.attrs["memory"] = scene.arms is not None
         h5.attrs["laws over distance"] = any(
             c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts

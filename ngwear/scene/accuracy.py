@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ngwear.errors import require
+from ngwear.errors import check_fields, require
 
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
@@ -123,6 +123,7 @@ class Accuracy:
         return self.given(Accuracy(across=across, **tolerances))
 
     def __post_init__(self) -> None:
+        check_fields(self, "accuracy")
         self._refuse_two_ways()
         if self.error is None:
             self._default("grading", _usual_grading(self.across))

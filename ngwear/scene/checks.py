@@ -44,7 +44,7 @@ def refuse_in_scene(scene: Any) -> None:
         remedy = "a sealed pressure needs a [fluid] table that says which edges it may reach"
         require(stroke.pressure == 0 or scene.fluid is not None, f"{place}.pressure", stroke.pressure, remedy)
         remedy = "rubber with memory needs the stroke's speed in mm/s"
-        require(scene.prony is None or known, f"{place}.speed", stroke.speed, remedy)
+        require(scene.part.prony is None or known, f"{place}.speed", stroke.speed, remedy)
         for contact in scene.contacts:
             law = contact.friction_law
             remedy = f"the friction of contact '{contact.name}' depends on speed: give the stroke's in mm/s"
@@ -58,7 +58,7 @@ def refuse_in_scene(scene: Any) -> None:
 
     rest = scene.program.rest
     remedy = "only rubber with memory changes while it sits: give [material.prony], or leave rest out"
-    require(scene.prony is not None or math.isinf(rest), "program.rest", rest, remedy)
+    require(scene.part.prony is not None or math.isinf(rest), "program.rest", rest, remedy)
 
     order = scene.accuracy.order
     remedy = why_not_order(scene, order)
@@ -94,7 +94,7 @@ def _refuse_with_deactivation(scene: Any) -> None:
     remedy = "must be 'never' in a scene that deactivates elements: its mesh loses them and is not made anew"
     require(scene.wear.remesh == "never", "wear.remesh", scene.wear.remesh, remedy)
     remedy = "elements can be deactivated in rubber without memory only: leave one of both out"
-    require(scene.prony is None, "material.prony", scene.prony, remedy)
+    require(scene.part.prony is None, "material.prony", scene.part.prony, remedy)
     remedy = "at least one contact must wear: below its edges the layers of elements lie"
     require(bool(scene.worn_edges), "contact.specific_wear_rate", 0.0, remedy)
     for name in ("across", "error"):

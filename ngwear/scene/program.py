@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass, replace
 
-from ngwear.errors import require
+from ngwear.errors import check_fields, require
 
 PART = re.compile(r", part \d+ of \d+$")  # of a stroke's name
 
@@ -16,7 +17,7 @@ def whole_name(kind: str) -> str:
     return PART.sub("", kind)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True)
 class Stroke:
     """One phase of the cycle.
 
@@ -34,6 +35,7 @@ class Stroke:
     """
 
     name: str
+    _: KW_ONLY
     travel: float
     direction: float = 1.0
     pressure: float = 0.0
@@ -41,6 +43,7 @@ class Stroke:
 
     def __post_init__(self) -> None:
         place = f"program.stroke '{self.name}'"
+        check_fields(self, place)
         require(self.travel > 0, f"{place}.travel", self.travel, "must be greater than 0 mm")
         require(-1 <= self.direction <= 1, f"{place}.direction", self.direction, "must lie between -1 and 1")
         require(self.pressure >= 0, f"{place}.pressure", self.pressure, "must be at least 0 MPa")
@@ -58,7 +61,7 @@ class Program:
 
     Parameters
     ----------
-    cycle : tuple of Stroke
+    cycle : sequence of Stroke
         As they are solved: each may be a part of one that was given, see ``divided``.
     strokes : int
         How many of these.
@@ -69,12 +72,16 @@ class Program:
         How many of these make a stroke that was given.
     """
 
-    cycle: tuple[Stroke, ...]
+    cycle: Sequence[Stroke]
     strokes: int
     rest: float = math.inf
     parts: int = 1
 
     def __post_init__(self) -> None:
+        check_fields(self, "program")
+        strokes = isinstance(self.cycle, Sequence) and all(isinstance(stroke, Stroke) for stroke in self.cycle)
+        require(strokes, "program.stroke", self.cycle, "must be a list of strokes")
+        object.__setattr__(self, "cycle", tuple(self.cycle))
         require(bool(self.cycle), "program.stroke", self.cycle, "give at least one stroke")
         require(self.strokes >= 0, "program.strokes", self.strokes, "must be at least 0")
         require(self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without it the part relaxes fully")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, typed
 from ngwear.laws import (
     ByPressure,
     FrictionalEnergyWear,
@@ -20,7 +20,7 @@ from ngwear.laws import (
     WearLaw,
     WearRate,
 )
-from ngwear.scene.toml_values import get, known, record, typed
+from ngwear.scene.toml_values import get, known, record
 
 _LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
 _WEAR_LAWS = {

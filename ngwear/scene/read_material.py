@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, typed
 from ngwear.materials import WLF, Arrhenius, Hyperelastic, MooneyRivlin, NeoHooke, PronySeries
 from ngwear.materials.library import relaxation_of
-from ngwear.scene.toml_values import get, known, record, typed
+from ngwear.scene.toml_values import get, known, record
 
 _MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
     "neo-hooke": NeoHooke,

@@ -6,10 +6,11 @@ from dataclasses import fields
 from pathlib import Path
 from typing import Any
 
+from ngwear.errors import typed
 from ngwear.scene.pin_scene import Pin, PinMesh, PinScene
 from ngwear.scene.read_laws import read_friction
 from ngwear.scene.read_material import read_arms, read_material
-from ngwear.scene.toml_values import get, known, record, subtable, typed
+from ngwear.scene.toml_values import get, known, record, subtable
 
 
 def pin_scene(data: dict[str, Any], name: str, folder: Path) -> PinScene:

@@ -7,8 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, typed
 from ngwear.geometry.outline_files import read_outline
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Fluid, Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Save, Wear
+from ngwear.scene.part import Part
 from ngwear.scene.pin_scene import KIND as PIN
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.program import Program, Stroke
@@ -16,8 +21,8 @@ from ngwear.scene.read_deactivation import read_deactivation
 from ngwear.scene.read_laws import read_friction, read_wear_law, read_wear_rate
 from ngwear.scene.read_material import read_arms, read_material
 from ngwear.scene.read_pin import pin_scene
-from ngwear.scene.scene import Accuracy, Contact, Fluid, Save, Scene, Support, Wear
-from ngwear.scene.toml_values import coordinate, get, known, record, subtable, tables, typed
+from ngwear.scene.scene import Scene
+from ngwear.scene.toml_values import coordinate, get, known, record, subtable, tables
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
 TABLES = {
@@ -71,14 +76,10 @@ def read_scene(path: Path | str) -> Scene | PinScene:
 
 def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
     known("", data, TABLES)
-    outline = subtable(data, "contour")
-    known("contour.", outline, {"file"})
     return Scene(
         name=name,
         axisymmetric=KINDS[data["scene"]["kind"]],
-        contour=read_outline(folder / str(get(outline, "contour", "file"))),
-        material=read_material(subtable(data, "material")),
-        prony=read_arms(data["material"]["prony"]) if "prony" in data["material"] else None,
+        part=_part(data, folder),
         contacts=tuple(_contact(i, table, folder) for i, table in enumerate(tables(data, "contact"))),
         fluid=record(Fluid, "fluid", data["fluid"]) if "fluid" in data else None,
         supports=tuple(record(Support, f"support[{i}]", t) for i, t in enumerate(tables(data, "support"))),
@@ -87,6 +88,16 @@ def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
         wear=record(Wear, "wear", data.get("wear", {})),
         deactivation=read_deactivation(data["deactivation"]) if "deactivation" in data else None,
         save=record(Save, "save", data.get("save", {})),
+    )
+
+
+def _part(data: dict[str, Any], folder: Path) -> Part:
+    outline, material = subtable(data, "contour"), subtable(data, "material")
+    known("contour.", outline, {"file"})
+    return Part(
+        read_outline(folder / typed("contour.file", get(outline, "contour", "file"), "str")),
+        material=read_material(material),
+        prony=read_arms(material["prony"]) if "prony" in material else None,
     )
 
 

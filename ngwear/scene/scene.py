@@ -3,174 +3,41 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import KW_ONLY, dataclass, field
+from typing import Any
 
-from ngwear.errors import require
-from ngwear.geometry.outline import Outline
-from ngwear.laws import FrictionLaw, WearLaw, WearRate, law_of
+from ngwear.errors import check_fields, require
 from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.scene.accuracy import Accuracy
-from ngwear.scene.checks import refuse_in_contact, refuse_in_scene
+from ngwear.scene.boundary import Fluid, Support
+from ngwear.scene.checks import refuse_in_scene
+from ngwear.scene.contact import Contact
 from ngwear.scene.deactivation import Deactivation
+from ngwear.scene.options import Save, Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program
-from ngwear.surfaces import RigidSurface
 
 
-@dataclass(frozen=True, kw_only=True)
-class Contact:
-    """A rigid surface and the edges that may touch it.
+@dataclass(frozen=True)
+class Scene:
+    """Everything that a run needs.
 
     Parameters
     ----------
     name : str
-    edges : tuple of str
-    surface : RigidSurface
-        In its final place; while mounting it comes in from first touch.
-    friction : FrictionLaw or float
-        Coefficient of friction [-], >= 0.
-    slides : bool
-        Whether the surface moves along itself in the strokes, as a rod does; a housing stands still.
-    sticks : bool or None
-        Whether friction may stick, with unknowns and a history of its own, or all of the contact slides in every
-        stroke; left to ``Scene.may_stick`` unless given.
-    specific_wear_rate : WearRate or float
-        Archard's k [mm²/N], >= 0: depth per nominal pressure and sliding distance.
-    wear_law : WearLaw or None
-        What the wear makes of the pressure, times that k; Archard's law unless given. The surface wears by it too.
-    counter_wear_rate : float
-        That of the surface, which keeps a worn profile of its own [mm²/N], >= 0; only where the part wears too.
-    force : float or None
-        Press the surface on with this force [N, or N/mm in plane strain] instead of by its place.
-    refine : bool
-        Whether the mesh shall follow this contact; wearing contacts always are followed.
-    """
-
-    name: str
-    edges: tuple[str, ...]
-    surface: RigidSurface
-    friction: FrictionLaw | float = 0.0
-    slides: bool = True
-    sticks: bool | None = None
-    specific_wear_rate: WearRate | float = 0.0
-    wear_law: WearLaw | None = None
-    counter_wear_rate: float = 0.0
-    force: float | None = None
-    refine: bool = False
-
-    def __post_init__(self) -> None:
-        place = f"contact '{self.name}'"
-        require(bool(self.edges), f"{place}.edges", self.edges, "name at least one edge")
-        if not isinstance(self.friction, FrictionLaw):
-            require(self.friction >= 0, f"{place}.friction", self.friction, "must be at least 0")
-        if not isinstance(self.specific_wear_rate, WearRate):
-            rate = self.specific_wear_rate
-            require(rate >= 0, f"{place}.specific_wear_rate", rate, "must be at least 0 mm²/N")
-        counter = self.counter_wear_rate
-        require(counter >= 0, f"{place}.counter_wear_rate", counter, "must be at least 0 mm²/N")
-        require(
-            self.force is None or self.force > 0, f"{place}.force", self.force, "must be greater than 0 (it presses)"
-        )
-        refuse_in_contact(self)
-
-    @property
-    def friction_law(self) -> FrictionLaw | None:
-        """The law of friction; None without any."""
-        return law_of(self.friction)
-
-    @property
-    def wear_rate(self) -> WearRate:
-        """The specific wear rate as a table, of one row for a number."""
-        rate = self.specific_wear_rate
-        return rate if isinstance(rate, WearRate) else WearRate(distance=(0.0,), rate=(rate,))
-
-    @property
-    def wears(self) -> bool:
-        """Whether there is any wear."""
-        return self.wear_rate.highest > 0
-
-
-@dataclass(frozen=True, kw_only=True)
-class Fluid:
-    """Where a sealed fluid may go: ``edges`` in one piece, ``inlet`` always wetted.
-
-    ``leak_pressure`` asks what fluid pressure the contacts hold; meshes are then fine where the fluid meets them, too:
-    at its front, as at a punch's edge, a contact often presses hardest.
-    """
-
-    edges: tuple[str, ...]
-    inlet: tuple[str, ...]
-    leak_pressure: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
-class Support:
-    """Edges held at their place in x, y or both."""
-
-    edges: tuple[str, ...]
-    x: bool = True
-    y: bool = True
-
-
-@dataclass(frozen=True, kw_only=True)
-class Wear:
-    """How the worn depth is integrated, and what becomes of the mesh.
-
-    The nodes follow the worn outline, those inside smoothly; a mesh can do so until its elements are squeezed or folded
-    (``Body.move_to``). With ``remesh`` other than ``"due"`` it is fine at once wherever the wear may take the contact.
-
-    Parameters
-    ----------
-    scheme : str
-        ``"implicit"`` (backward Euler inside the contact law, stable for every step) or ``"explicit"``.
-    step : str
-        ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"fixed"``: ``max_jump``, fewer where so
-        many fail; ``"each"``: every stroke.
-    max_jump : int
-        Most cycles at once.
-    remesh : str
-        ``"due"``: a new mesh as soon as another would be better for the present contact; ``"limit"``: once the nodes
-        cannot be moved any further; ``"never"``: the run gives up there.
-    """
-
-    scheme: str = "implicit"
-    step: str = "jump"
-    max_jump: int = 1000
-    remesh: str = "due"
-
-    def __post_init__(self) -> None:
-        require(self.scheme in ("implicit", "explicit"), "wear.scheme", self.scheme, "must be 'implicit' or 'explicit'")
-        require(self.step in ("jump", "fixed", "each"), "wear.step", self.step, "must be 'jump', 'fixed' or 'each'")
-        require(self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
-        require(
-            self.remesh in ("due", "limit", "never"), "wear.remesh", self.remesh, "must be 'due', 'limit' or 'never'"
-        )
-
-
-@dataclass(frozen=True, kw_only=True)
-class Save:
-    """What a run keeps besides one line a step.
-
-    Parameters
-    ----------
-    strokes : tuple of int
-        Strokes that a jump must not pass over, so that outline and pressure are kept just there.
-    vtk : bool
-        Whether the deformed mesh is written for ParaView at these strokes and at the end.
-    """
-
-    strokes: tuple[int, ...] = ()
-    vtk: bool = False
-
-    def __post_init__(self) -> None:
-        require(all(n > 0 for n in self.strokes), "save.strokes", self.strokes, "must be whole numbers above 0")
-
-
-@dataclass(frozen=True, kw_only=True)
-class Scene:
-    """Everything that a run needs.
-
-    ``material`` is the long-term behaviour, ``prony`` the arms of its memory, if any, at the scene's temperature.
-    ``program`` is kept as it is solved, each stroke in ``accuracy.parts``.
+    part : Part
+    contacts : sequence of Contact
+    program : Program
+        Kept as it is solved: each stroke in ``accuracy.parts``.
+    axisymmetric : bool
+        Whether the section is (axial, radial) of a ring, as of seals; else plane strain, forces per mm of thickness.
+    fluid : Fluid or None
+    supports : sequence of Support
+    accuracy : Accuracy
+    wear : Wear
+    deactivation : Deactivation or None
+    save : Save
 
     Raises
     ------
@@ -179,22 +46,22 @@ class Scene:
     """
 
     name: str
-    contour: Outline
-    material: Hyperelastic
-    contacts: tuple[Contact, ...]
+    part: Part
+    _: KW_ONLY
+    contacts: Sequence[Contact]
     program: Program
-    prony: PronySeries | None = None
-    axisymmetric: bool = False
+    axisymmetric: bool = True
     fluid: Fluid | None = None
-    supports: tuple[Support, ...] = ()
+    supports: Sequence[Support] = ()
     accuracy: Accuracy = field(default_factory=Accuracy)
     wear: Wear = field(default_factory=Wear)
     deactivation: Deactivation | None = None
     save: Save = field(default_factory=Save)
 
     def __post_init__(self) -> None:
+        self._check_kinds()
         object.__setattr__(self, "program", self.program.divided(self.accuracy.parts))
-        known = self.contour.edge_names
+        known = self.part.outline.edge_names
         users = [(f"contact '{c.name}'.edges", c.edges) for c in self.contacts]
         users += [(f"support[{i}].edges", s.edges) for i, s in enumerate(self.supports)]
         if self.fluid is not None:
@@ -211,17 +78,38 @@ class Scene:
         names = [c.name for c in self.contacts]
         require(len(set(names)) == len(names), "contact.name", names, "must differ from each other")
         if self.axisymmetric:
-            lowest = float(self.contour.points[:, 1].min())
-            require(lowest > 0, "contour", lowest, "an axisymmetric section must lie above the axis: radii > 0 mm")
+            lowest = float(self.part.outline.points[:, 1].min())
+            require(
+                lowest > 0,
+                "contour",
+                lowest,
+                "an axisymmetric section must lie above the axis, radii > 0 mm; or make it plane strain",
+            )
         refuse_in_scene(self)
         for contact in self.contacts:
             self._check_side(contact)
+
+    def _check_kinds(self) -> None:
+        """Refuse what is no part, no contact ...; lists become tuples."""
+        check_fields(self, "scene")
+        kinds: dict[str, Any] = {"part": Part, "program": Program, "accuracy": Accuracy, "wear": Wear, "save": Save}
+        for name, kind in kinds.items():
+            value = getattr(self, name)
+            require(isinstance(value, kind), name, value, f"must be of the class {kind.__name__}")
+        for name, kind in {"fluid": Fluid, "deactivation": Deactivation}.items():
+            value = getattr(self, name)
+            require(value is None or isinstance(value, kind), name, value, f"must be of the class {kind.__name__}")
+        for name, kind in {"contacts": Contact, "supports": Support}.items():
+            values = getattr(self, name)
+            right = isinstance(values, Sequence) and all(isinstance(value, kind) for value in values)
+            require(right, name, values, f"must be a list of the class {kind.__name__}")
+            object.__setattr__(self, name, tuple(values))
 
     def _check_side(self, contact: Contact) -> None:
         """A rigid body that swallows the part, or that it can never reach, is on the wrong side."""
         from shapely import Polygon
 
-        centre = Polygon(self.contour.points).centroid
+        centre = Polygon(self.part.outline.points).centroid
         gap = float(contact.surface.gap(centre.x, centre.y))
         require(
             gap > 0 and math.isfinite(gap),
@@ -237,19 +125,21 @@ class Scene:
 
         Its window reaches from the shortest stroke to the time from mounting to the end.
         """
-        if self.prony is None:
+        if self.part.prony is None:
             return None
         shortest = min(stroke.duration for stroke in self.program.cycle)
         longest = max(self.program.rest + self.program.duration, shortest)
-        return self.prony.folded(shortest=shortest, longest=longest, tolerance=self.accuracy.folding_error)
+        return self.part.prony.folded(shortest=shortest, longest=longest, tolerance=self.accuracy.folding_error)
 
     @property
     def rubber(self) -> Hyperelastic:
         """What is solved as elastic: the long-term material, and the arms that never relax here as springs."""
         folding = self.folding
         if folding is None or folding.stiffening == 1:
-            return self.material
-        return Stiffened(material=self.material, factor=folding.stiffening, bulk_modulus=self.material.bulk_modulus)
+            return self.part.material
+        return Stiffened(
+            material=self.part.material, factor=folding.stiffening, bulk_modulus=self.part.material.bulk_modulus
+        )
 
     @property
     def arms(self) -> PronySeries | None:
@@ -287,7 +177,7 @@ class Scene:
             return 0.0
         end = self.program.slid(self.program.strokes)
         mu = max(law.curve(stroke.speed).extremes(0.0, end)[1] for stroke in self.program.cycle)
-        return 2 * mu * float(self.contour.points[:, 1].max() - self.contour.points[:, 1].min())
+        return 2 * mu * float(self.part.outline.points[:, 1].max() - self.part.outline.points[:, 1].min())
 
     @property
     def marks(self) -> tuple[int, ...]:

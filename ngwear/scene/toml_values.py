@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import MISSING, fields
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, typed
 
 
 def record(cls: Any, place: str, table: Any) -> Any:
@@ -19,35 +19,6 @@ def record(cls: Any, place: str, table: Any) -> Any:
             get(table, place, f.name)
     kind = {f.name: str(f.type) for f in own}
     return cls(**{key: typed(f"{place}.{key}", value, kind[key]) for key, value in table.items()})
-
-
-def typed(place: str, value: Any, kind: str) -> Any:
-    """Check a TOML value against the annotation of the field that takes it."""
-    if kind.startswith("tuple[str"):
-        if not isinstance(value, list) or not all(isinstance(v, str) for v in value):
-            raise SceneError(place, value, 'must be a list of names, such as ["lip"]')
-        return tuple(value)
-    if kind.startswith("tuple[int"):
-        if not isinstance(value, list) or not all(isinstance(v, int) and not isinstance(v, bool) for v in value):
-            raise SceneError(place, value, "must be a list of whole numbers, such as [50, 100]")
-        return tuple(value)
-    if kind.startswith("tuple[float"):
-        if not isinstance(value, list):
-            raise SceneError(place, value, "must be a list of numbers, such as [3.0, 10.0]")
-        return tuple(typed(f"{place}[{i}]", v, "float") for i, v in enumerate(value))
-    if kind.startswith("bool") and not isinstance(value, bool):
-        raise SceneError(place, value, "must be true or false")
-    if kind == "str" and not isinstance(value, str):
-        raise SceneError(place, value, "must be a text in quotes")
-    if kind == "int" and (isinstance(value, bool) or not isinstance(value, int)):
-        raise SceneError(place, value, "must be a whole number")
-    if kind.startswith("float"):
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise SceneError(place, value, "must be a number")
-        if not abs(value) < 1e15:
-            raise SceneError(place, value, "must be a finite number (below 1e15)")
-        return float(value)
-    return value
 
 
 def coordinate(place: str, value: Any, *, pair: bool) -> Any:

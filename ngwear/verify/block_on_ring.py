@@ -81,7 +81,7 @@ def run() -> list[Check]:
         add(f"depth after {metre} m [um]", depth[metre], deep, 0.01)
         add(f"pressure in the middle after {metre} m [MPa]", middle_pressure(profile, 0.1 * wide), pressure, 0.02)
         add(f"half width after {metre} m [mm]", half_width(profile), wide, 0.02)
-    removed = scene.contour.area - state.contour.area
+    removed = scene.part.outline.area - state.contour.area
     flat = BLOCK.wear_rate * BLOCK.load * 1e3 * METRES[-1]
     add("area lost by the outline over the law's quadrature [-]", removed / book.worn, 1.0, 1e-6)
     add("area lost by the outline over the stepper's book [-]", removed / state.ledger.worn, 1.0, 1e-6)

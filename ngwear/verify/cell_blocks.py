@@ -16,9 +16,14 @@ from ngwear.laws.damage import Criterion
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State
 from ngwear.materials import Hyperelastic
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
 from ngwear.scene.deactivation import Deactivation
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
 from ngwear.wear.jump_control import JumpControl
 
@@ -65,14 +70,14 @@ def held(
     far = Plane(point=(0.0, 1e3), normal_vector=(0.0, -1.0))
     scene = Scene(
         name="elements",
-        contour=cells.contour,
-        material=material,
+        part=Part(cells.contour, material=material),
         contacts=(Contact(name="far away", edges=(edge,), surface=far, specific_wear_rate=1e-9),),
         supports=supports,
         program=Program(cycle=(Stroke(name="pull", travel=1.0),), strokes=1),
         accuracy=Accuracy(patch=1e-3, mounting=1.0, coarse=1.0),
         wear=Wear(remesh="never"),
         deactivation=Deactivation(depth=1.0, damage=damage),
+        axisymmetric=False,
     )
     stage = Stage(scene, ElementBody(cells))
     phases = [Phase(np.zeros(stage.problem.space.ndof))]

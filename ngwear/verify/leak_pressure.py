@@ -15,8 +15,12 @@ from __future__ import annotations
 from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Fluid, Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Fluid, Scene, Support
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 
@@ -33,8 +37,7 @@ def scene() -> Scene:
     plates = {"bottom": lower, "top": upper}
     return Scene(
         name="block in a groove",
-        contour=Outline.rectangle((0.0, LENGTH), (0.0, HEIGHT)),
-        material=RUBBER,
+        part=Part(Outline.rectangle((0.0, LENGTH), (0.0, HEIGHT)), material=RUBBER),
         contacts=tuple(
             Contact(
                 name=f"{side} plate",
@@ -50,6 +53,7 @@ def scene() -> Scene:
             cycle=tuple(Stroke(name=f"{p:g} MPa", travel=1.0, pressure=p) for p in PRESSURES), strokes=len(PRESSURES)
         ),
         accuracy=Accuracy(patch=EDGE, coarse=EDGE, mounting=EDGE),
+        axisymmetric=False,
     )
 
 

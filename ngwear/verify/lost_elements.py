@@ -33,7 +33,9 @@ from ngwear.loop.lost_elements import lose
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
-from ngwear.scene.scene import Contact, Scene, Support
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.cell_blocks import TIGHT, grid, held

@@ -24,8 +24,13 @@ from ngwear.geometry.outline import Outline
 from ngwear.laws import FrictionLaw, Lubrication, WearRate
 from ngwear.loop.run import run as run_scene
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 
@@ -60,12 +65,12 @@ def scene(friction: FrictionLaw, rate: WearRate | float) -> Scene:
     )
     return Scene(
         name=CASE,
-        contour=Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)),
-        material=NeoHooke.from_young(1.0, 0.4995),
+        part=Part(Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)), material=NeoHooke.from_young(1.0, 0.4995)),
         contacts=(plane,),
         supports=(Support(edges=("bottom",)),),
         program=Program(cycle=CYCLE, strokes=round(2 * END / 100)),
         accuracy=Accuracy(patch=PATCH, coarse=0.3, mounting=PATCH, wear_error=0.02, longest_jump=1.0),
+        axisymmetric=False,
     )
 
 

@@ -23,9 +23,14 @@ from ngwear.loop.lost_elements import element_body
 from ngwear.loop.stage import Stage
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
 from ngwear.scene.deactivation import Deactivation, DistortionFilter
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 
@@ -48,14 +53,14 @@ def scene(scheme: str = "explicit", strokes: tuple[Stroke, ...] = (), **deactiva
     )
     return Scene(
         name="block of elements",
-        contour=Outline.rectangle((0.0, 4.0), (0.0, 2.0)),
-        material=NeoHooke(shear=1.0, bulk_modulus=100.0),
+        part=Part(Outline.rectangle((0.0, 4.0), (0.0, 2.0)), material=NeoHooke(shear=1.0, bulk_modulus=100.0)),
         contacts=(spec,),
         supports=(Support(edges=("bottom",)),),
         program=Program(cycle=cycle, strokes=STROKES),
         accuracy=Accuracy(patch=0.1, coarse=0.5, mounting=0.1),
         wear=Wear(scheme=scheme, step="each", remesh="never"),
-        deactivation=Deactivation(depth=0.3, **deactivation),  # type: ignore[arg-type]
+        deactivation=Deactivation(depth=0.3, **deactivation),
+        axisymmetric=False,  # type: ignore[arg-type]
     )
 
 

@@ -31,7 +31,7 @@ from ngwear.laws.damage import MaximumPrincipalStress, TensileNormalStress
 from ngwear.loop.lost_elements import exhaustion, tear
 from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
-from ngwear.scene.scene import Support
+from ngwear.scene.boundary import Support
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.cell_blocks import grid, held, named, pull, reaction
 

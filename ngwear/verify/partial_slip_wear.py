@@ -39,8 +39,13 @@ from ngwear.geometry.outline import Outline
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 
@@ -67,8 +72,7 @@ def scene(patch: float) -> Scene:
     to, fro = (Stroke(name=name, travel=TRAVEL, direction=way) for name, way in (("to", 1.0), ("fro", -1.0)))
     return Scene(
         name="wear in partial slip",
-        contour=Outline(np.array(points), names, np.ones(len(points), dtype=bool)),
-        material=MATERIAL,
+        part=Part(Outline(np.array(points), names, np.ones(len(points), dtype=bool)), material=MATERIAL),
         contacts=(
             Contact(name="shaft", edges=("top",), surface=shaft, force=LOAD, friction=MU, specific_wear_rate=WEAR_RATE),
         ),
@@ -76,6 +80,7 @@ def scene(patch: float) -> Scene:
         program=Program(cycle=(to, fro), strokes=LATE),
         accuracy=Accuracy(patch=patch, coarse=8.0, mounting=0.2, grading=0.4, stress_error=0.1, wear_error=0.05),
         wear=Wear(max_jump=LATE),
+        axisymmetric=False,
     )
 
 

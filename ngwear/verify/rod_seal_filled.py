@@ -23,7 +23,7 @@ LEFTMOST = 1.02  # mm: between the first two ridges
 
 def _leftmost(result: Result) -> float:
     """Depth of the ridge farthest to the left [mm]."""
-    before = result.recorder.scene.contour
+    before = result.recorder.scene.part.outline
     return float(depths(before, result.state.contour)[before.points[:, 0] < LEFTMOST].max())
 
 

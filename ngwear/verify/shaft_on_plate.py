@@ -176,7 +176,7 @@ def _explicit(scene: Scene, add: Callable[..., None]) -> None:
     """Below the critical distance the pressure is as smooth as the implicit one, above it is not."""
     whole, (spec,) = scene.program.slid(scene.program.strokes), scene.contacts
     for patch in (0.1, 0.05):
-        critical = critical_distance(patch, spec.specific_wear_rate, scene.material.plane_strain_modulus)
+        critical = critical_distance(patch, spec.specific_wear_rate, scene.part.material.plane_strain_modulus)
         for times, limit, bound in ((0.8, 1.05, "below"), (2.0, 1.2, "above")):
             strokes = (math.ceil if times < 1 else math.floor)(whole / (times * critical))
             for scheme in ("explicit", "implicit"):

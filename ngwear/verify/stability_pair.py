@@ -19,8 +19,13 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import steps
@@ -37,8 +42,7 @@ def scene(scheme: str, times: float) -> Scene:
     counter = Plane(point=(0.0, HEIGHT), normal_vector=(0.0, -1.0))
     return Scene(
         name=f"{scheme} wear",
-        contour=Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)),
-        material=RUBBER,
+        part=Part(Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)), material=RUBBER),
         contacts=(
             Contact(name="plane", edges=("top",), surface=counter, force=2 * HALF * MEAN, specific_wear_rate=WEAR_RATE),
         ),
@@ -46,6 +50,7 @@ def scene(scheme: str, times: float) -> Scene:
         program=Program(cycle=(Stroke(name="turn", travel=times * CRITICAL),), strokes=STEPS),
         accuracy=Accuracy(patch=PATCH, coarse=0.2, mounting=PATCH),
         wear=Wear(scheme=scheme, step="each"),
+        axisymmetric=False,
     )
 
 

@@ -42,8 +42,12 @@ from ngwear.loop.time_step_error import ahead
 from ngwear.materials import MooneyRivlin, PronySeries
 from ngwear.results import quantities_of_interest
 from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Fluid, Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Contact, Fluid, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
@@ -159,15 +163,14 @@ def scene(parts: int) -> Scene:
     to = Stroke(name="to", travel=WAY, direction=-1.0, speed=WAY / DURATION)
     return Scene(
         name="block under a cylinder",
-        contour=Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)),
-        material=RUBBER,
-        prony=ARMS,
+        part=Part(Outline.rectangle((-HALF, HALF), (0.0, HEIGHT)), material=RUBBER, prony=ARMS),
         contacts=(Contact(name="roller", edges=("top",), surface=cylinder, friction=FRICTION, refine=True),),
         program=Program(cycle=(to, replace(to, name="fro", direction=1.0, pressure=PRESSURE)), strokes=STROKES),
         fluid=Fluid(edges=("right",), inlet=("right",)),
         supports=(Support(edges=("bottom",)),),
         accuracy=Accuracy(patch=0.06, coarse=0.3, mounting=0.06, parts=parts),
         wear=Wear(step="each"),
+        axisymmetric=False,
     )
 
 

@@ -30,7 +30,8 @@ from dataclasses import replace
 import numpy as np
 
 from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear
-from ngwear.scene.scene import Contact, Scene
+from ngwear.scene.contact import Contact
+from ngwear.scene.scene import Scene
 from ngwear.verify import stability_pair, worn_cylinder
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.wear_runs import CONTACT, depth_at, middle_pressure, steps

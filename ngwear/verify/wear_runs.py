@@ -13,8 +13,13 @@ from ngwear.geometry.outline import Outline
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import CALM
 from ngwear.materials import Hyperelastic
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Save, Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Save, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder
 from ngwear.wear.backward_differences import share_of_last
 
@@ -62,8 +67,7 @@ class CylinderOnBlock:
         ring = Cylinder(centre=(0.0, size + self.radius), radius=self.radius)
         return Scene(
             name=name,
-            contour=Outline.rectangle((-size, size), (0.0, size)),
-            material=self.material,
+            part=Part(Outline.rectangle((-size, size), (0.0, size)), material=self.material),
             contacts=(
                 Contact(name=CONTACT, edges=("top",), surface=ring, force=self.load, specific_wear_rate=self.wear_rate),
             ),
@@ -74,6 +78,7 @@ class CylinderOnBlock:
             ),
             wear=Wear(max_jump=marks[-1]),
             save=Save(strokes=marks),
+            axisymmetric=False,
         )
 
 
@@ -122,7 +127,7 @@ def pressure_over_volume_ratio(scene: Scene, profile: ContactProfile) -> float:
 
     In plane strain a half-plane's surface under the pressure p has the stresses -p along and across it.
     """
-    shear, bulk = scene.material.shear_modulus, scene.material.bulk_modulus
+    shear, bulk = scene.part.material.shear_modulus, scene.part.material.bulk_modulus
     # (1 + nu)(1 - 2 nu) / E = 1 / (2 (lambda + G)), lambda = K - 2 G / 3
     compliance = 1 / (2 * (bulk + shear / 3))
     return float(profile.load @ (1 + 2 * compliance * profile.nominal_pressure))

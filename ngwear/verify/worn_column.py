@@ -18,8 +18,13 @@ from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.outline import Outline
 from ngwear.laws import PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed
 from ngwear.verify.wear_runs import steps
@@ -46,13 +51,13 @@ def scene(law: WearLaw | None, way: float, count: int, *, scheme: str = "implici
     spec = {"specific_wear_rate": WEAR_RATE, "wear_law": law} | contact
     return Scene(
         name="column",
-        contour=CONTOUR,
-        material=RUBBER,
+        part=Part(CONTOUR, material=RUBBER),
         contacts=(Contact(name="plane", edges=("top",), surface=SURFACE, **spec),),
         supports=(Support(edges=("bottom",), x=False), Support(edges=("left", "right"), y=False)),
         program=Program(cycle=(Stroke(name="turn", travel=way * UNIT / count),), strokes=count),
         accuracy=Accuracy(patch=PATCH, coarse=PATCH, mounting=PATCH),
         wear=Wear(scheme=scheme, step="each"),
+        axisymmetric=False,
     )
 
 

@@ -63,7 +63,7 @@ def run() -> list[Check]:
     profile = state.reports[-1].contacts[CONTACT]
     add("half width [mm]", half_width(profile), a, TOLERANCE)
     add("mean pressure within 0.8 a [MPa]", middle_pressure(profile, 0.8 * a), LOAD / (2 * a), TOLERANCE)
-    removed = scene.contour.area - state.contour.area
+    removed = scene.part.outline.area - state.contour.area
     add("area lost by the outline over the law's quadrature [-]", removed / book.worn, 1.0, 1e-6)
     add("resultant of the pressure over the load [-]", book.load / LOAD, 1.0, 1e-6)
     return checks

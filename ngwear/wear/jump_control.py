@@ -17,7 +17,7 @@ STRETCH = 1.2  # how much longer a step may become so that one less remains
 
 @dataclass
 class JumpControl:
-    """Choose the jump from the embedded pair of backward differences (``wear.backward_differences``) and the trapezoidal rule.
+    """Choose the jump from an embedded pair: ``wear.backward_differences`` and the trapezoidal rule.
 
     Their difference over a step is measured as an area (L1 norm over the outline: in the maximum norm a point that has
     just come into contact would keep the step small for ever), relative to the area that the step removes. That ratio

@@ -41,7 +41,7 @@ def fine_along_the_edges(edge):
     from ngwear.geometry.sizing import SizeField, fitted
 
     def field(scene, across=None):
-        contour, accuracy = scene.contour, scene.accuracy
+        contour, accuracy = scene.part.outline, scene.accuracy
         everywhere = SizeField(contour.points, np.full(len(contour), edge), edge)
         dense = fitted(contour, everywhere)
         on = dense.on(scene.worn_edges)

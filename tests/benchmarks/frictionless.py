@@ -50,17 +50,20 @@ def by_hand():
 def through_scene():
     """What the program makes of a scene without friction; it imports no more."""
     from ngwear.loop.stage import Stage
+    from ngwear.scene.boundary import Support
+    from ngwear.scene.contact import Contact
+    from ngwear.scene.part import Part
     from ngwear.scene.program import Program, Stroke
-    from ngwear.scene.scene import Contact, Scene, Support
+    from ngwear.scene.scene import Scene
 
     body = sheet()
     scene = Scene(
         name="P1a",
-        contour=body.base,
-        material=RUBBER,
+        part=Part(body.base, material=RUBBER),
         contacts=(Contact(name="roller", edges=("top",), surface=ROLLER),),
         supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(Stroke(name="turn", travel=1.0),), strokes=1),
+        axisymmetric=False,
     )
     stage = Stage(scene, body)
     stage.problem.set_loads(stage.stroke_loads(scene.program.cycle[0]))

@@ -53,9 +53,14 @@ def pair(effect):
     from ngwear.geometry.outline import Outline
     from ngwear.laws import PowerWear
     from ngwear.materials import MooneyRivlin, PronySeries
+    from ngwear.scene.accuracy import Accuracy
+    from ngwear.scene.boundary import Fluid, Support
+    from ngwear.scene.contact import Contact
     from ngwear.scene.deactivation import Deactivation
+    from ngwear.scene.options import Wear
+    from ngwear.scene.part import Part
     from ngwear.scene.program import Program, Stroke
-    from ngwear.scene.scene import Accuracy, Contact, Fluid, Scene, Support, Wear
+    from ngwear.scene.scene import Scene
     from ngwear.surfaces import Cylinder
 
     forth = Stroke(name="forth", travel=10.0, speed=20.0)
@@ -63,13 +68,15 @@ def pair(effect):
     roller = Contact(name="roller", edges=("top",), surface=Cylinder(centre=(0.0, 6.75), radius=5.0), refine=True)
     bare = Scene(
         name="sheet",
-        contour=Outline.rectangle((-5.0, 5.0), (0.0, 2.0)),
-        material=MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
+        part=Part(
+            Outline.rectangle((-5.0, 5.0), (0.0, 2.0)), material=MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0)
+        ),
         contacts=(roller,),
         supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(forth, back), strokes=2),
         accuracy=Accuracy(patch=0.1, coarse=0.5, mounting=0.1),
         wear=Wear(step="each", remesh="never"),
+        axisymmetric=False,
     )
 
     def rolled(scene, **changes):
@@ -89,7 +96,7 @@ def pair(effect):
             ),
             bare,
         ),
-        "memory": (replace(bare, prony=PronySeries((0.5, 0.4, 0.3), (0.1, 1.0, 10.0))), bare),
+        "memory": (replace(bare, part=replace(bare.part, prony=PronySeries((0.5, 0.4, 0.3), (0.1, 1.0, 10.0)))), bare),
         "wear": (worn, bare),
         "law of wear": (rolled(worn, wear_law=PowerWear(exponent=1.5)), worn),
         "wear of the surface": (rolled(worn, counter_wear_rate=1e-6), worn),
@@ -112,7 +119,7 @@ def without(effect, scene, bare):
     if effect == "fluid pressure":
         dry = tuple(replace(stroke, pressure=0.0) for stroke in scene.program.cycle)
         return replace(scene, fluid=None, program=replace(scene.program, cycle=dry))
-    return replace(scene, prony=None, deactivation=None)
+    return replace(scene, part=replace(scene.part, prony=None), deactivation=None)
 
 
 def run(scene):

@@ -66,7 +66,7 @@ def seal_turned_round(pressure_on) -> list[Finding]:
     scene = shipped_scene()
     outward, inward = scene.program.cycle
     inward = replace(inward, pressure=pressure_on)
-    stage = Stage(scene, Body(scene.contour, mounting_field(scene)))
+    stage = Stage(scene, Body(scene.part.outline, mounting_field(scene)))
     mount(stage, lambda _: None)
     found, lips = [], []
     for stroke in (outward, inward, outward, inward):

@@ -10,8 +10,13 @@ from physics import ROUGHNESS, Finding, body, book, near, pressure
 from ngwear.geometry.outline import Outline
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.options import Wear
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support, Wear
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder, Plane
 from ngwear.verify import stability_pair
 
@@ -80,13 +85,13 @@ def pressed_by(
     )
     return Scene(
         name="hard",
-        contour=contour,
-        material=RUBBER,
+        part=Part(contour, material=RUBBER),
         contacts=(contact,),
         supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(Stroke(name="stroke", travel=travel),), strokes=strokes),
         accuracy=Accuracy(patch=patch, coarse=coarse, mounting=patch),
         wear=Wear(**({"step": "each"} | options)),
+        axisymmetric=False,
     )
 
 

@@ -9,8 +9,8 @@ from ngwear.loop.element_sizes import chosen, laid_out
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.scene.accuracy import ALIKE, PRESETS, Accuracy
+from ngwear.scene.options import Wear
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import Wear
 from ngwear.verify.no_loss import scene
 
 GIVEN = replace(scene("implicit"), deactivation=None, wear=Wear())
@@ -123,7 +123,7 @@ def test_a_scene_file_says_it(sheet_file, table, told):
 def test_a_scene_with_lengths_is_laid_out_as_it_is():
     assert laid_out(GIVEN) is GIVEN
     out = laid_out(of(6.0)).accuracy
-    height = np.ptp(GIVEN.contour.points, axis=0).min()
+    height = np.ptp(GIVEN.part.outline.points, axis=0).min()
     assert out.across is None
     assert out.patch == out.mounting == pytest.approx(0.04 * height)
     assert out.coarse > out.mounting

@@ -11,7 +11,7 @@ from ngwear.errors import ResultError, SceneError
 from ngwear.loop.stepper import Stepper
 from ngwear.results.quantities_of_interest import DEPTH
 from ngwear.scene.accuracy import Accuracy
-from ngwear.scene.scene import Wear
+from ngwear.scene.options import Wear
 from ngwear.verify.no_loss import scene
 
 ASKED = 2e-3

@@ -25,7 +25,7 @@ from ngwear.results.quantities_of_interest import DEPTH, LOST, PEAK, PLACES, ele
 from ngwear.results.recorder import TORN, fingerprint
 from ngwear.results.result_file import read_result
 from ngwear.results.richardson import relative_errors
-from ngwear.scene.scene import Wear
+from ngwear.scene.options import Wear
 from ngwear.verify.no_loss import scene
 
 
@@ -105,7 +105,13 @@ def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
     whole = scene("implicit")
     program = replace(whole.program, cycle=tuple(replace(s, speed=1.0) for s in whole.program.cycle))
     arms = PronySeries((0.5,), (1e-4 * min(s.duration for s in program.cycle),))
-    jumps = replace(whole, deactivation=None, prony=arms, program=program, wear=replace(whole.wear, step="jump"))
+    jumps = replace(
+        whole,
+        deactivation=None,
+        part=replace(whole.part, prony=arms),
+        program=program,
+        wear=replace(whole.wear, step="jump"),
+    )
     bound, embedded = jumps.folding.bound, {"maximum depth [-]": 0.02, "worn area [-]": 0.01}
     assert 0 < bound < 1e-3
     mine, other = ({"maximum depth [-]": {"d": [d]}, "peak pressure [-]": {"p": [2 * d]}} for d in (1.0, 1.04))

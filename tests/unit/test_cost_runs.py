@@ -137,7 +137,7 @@ def test_arms_are_told_apart_by_what_is_kept(tmp_path, write_sheet):
     kept = [at(scene, [arms], (i,)).folding.kept.times for i in range(len(arms.ladder.values))]
     assert len(set(kept)) == len(kept)
     assert [len(k) for k in kept] == sorted(len(k) for k in kept)
-    assert len(kept[-1]) == len(scene.prony.times)
+    assert len(kept[-1]) == len(scene.part.prony.times)
 
 
 def test_knobs_of_a_pin(tmp_path):

@@ -18,10 +18,11 @@ from ngwear.laws.damage import (
 from ngwear.loop import lost_elements
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
+from ngwear.scene.boundary import Support
 from ngwear.scene.deactivation import DistortionFilter
+from ngwear.scene.options import Wear
 from ngwear.scene.program import Program
 from ngwear.scene.read_deactivation import read_deactivation
-from ngwear.scene.scene import Support, Wear
 from ngwear.verify.cell_blocks import grid, held, on_edge, pull
 from ngwear.verify.no_loss import scene
 

@@ -15,10 +15,10 @@ from ngwear.loop.run import GAVE_UP, run
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import Wearing
 from ngwear.materials import NeoHooke
+from ngwear.scene.boundary import Support
 from ngwear.scene.deactivation import Deactivation, DistortionFilter
 from ngwear.scene.program import Program
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import Support
 from ngwear.verify.cell_blocks import grid, held
 from ngwear.verify.material_book import torn_scene
 from ngwear.verify.no_loss import scene

@@ -23,8 +23,8 @@ from ngwear.plots.wear import history_figure
 from ngwear.results.quantities_of_interest import LEAKS, reading
 from ngwear.results.recorder import LEAK, Recorder
 from ngwear.results.result_file import read_result
+from ngwear.scene.boundary import Fluid
 from ngwear.scene.program import Program, Stroke
-from ngwear.scene.scene import Fluid
 from ngwear.scene.toml_values import record
 from ngwear.surfaces import Plane
 from ngwear.verify.builders import meshed

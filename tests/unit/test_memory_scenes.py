@@ -17,8 +17,8 @@ from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import Wearing
 from ngwear.materials import WLF, NeoHooke, PronySeries, Stiffened
 from ngwear.materials.library import filled_rubber
+from ngwear.scene.boundary import Support
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import Support
 from ngwear.surfaces import Plane
 
 SHIFT = 'shift = { law = "wlf", c1 = 17.44, c2 = 51.6, reference = 296.15 }'
@@ -69,14 +69,14 @@ def test_moduli_relative_to_the_instantaneous_stiffness_or_absolute(read_arms):
 @pytest.mark.parametrize("compound", ["filled rubber", "NBR"])
 def test_compound_of_the_library(read_arms, compound):
     scene = read_arms(f'\n[material.prony]\ncompound = "{compound}"\n')
-    assert scene.prony == filled_rubber().prony
+    assert scene.part.prony == filled_rubber().prony
     cold = read_arms(f'\n[material.prony]\ncompound = "{compound}"\ntemperature = 283.15\n')
-    assert cold.prony.times[0] > 2 * scene.prony.times[0]
+    assert cold.prony.times[0] > 2 * scene.part.prony.times[0]
 
 
 def test_smoothed_arms_are_three_a_decade(read_arms):
     scene = read_arms('\n[material.prony]\ncompound = "NBR"\nsmoothing = 0.05\n')
-    assert len(scene.prony.times) == 27
+    assert len(scene.part.prony.times) == 27
 
 
 BAD = {
@@ -168,22 +168,24 @@ def test_memory_asks_for_the_speed_of_every_stroke(tmp_path, write_sheet):
 
 def test_arms_outside_of_the_window_are_folded_within_the_bound(remembering):
     arms = PronySeries((0.5, 0.5, 0.5, 0.5), (1e-6, 0.2, 2.0, 1e9))
-    scene = replace(remembering, prony=arms, program=replace(remembering.program, rest=1e3))
+    scene = replace(
+        remembering, part=replace(remembering.part, prony=arms), program=replace(remembering.program, rest=1e3)
+    )
     assert scene.folding.fast == (1e-6,)
     assert scene.folding.slow == (1e9,)
     assert scene.folding.bound < 1e-3
     assert isinstance(scene.rubber, Stiffened)
-    assert scene.rubber.shear_modulus == pytest.approx(1.5 * scene.material.shear_modulus)
+    assert scene.rubber.shear_modulus == pytest.approx(1.5 * scene.part.material.shear_modulus)
     assert scene.arms.ratios == pytest.approx((0.5 / 1.5, 0.5 / 1.5))
     relaxed = replace(scene, program=replace(scene.program, rest=math.inf))
     assert relaxed.folding.slow == (), "a part that has relaxed for ever holds no spring of the slow arms"
-    assert relaxed.rubber is scene.material
+    assert relaxed.rubber is scene.part.material
     exact = replace(scene, accuracy=replace(scene.accuracy, folding_error=0.0))
     assert exact.arms == arms
 
 
 def test_memory_that_folds_away_altogether_is_no_memory(remembering):
-    scene = replace(remembering, prony=PronySeries((0.5,), (1e-6,)))
+    scene = replace(remembering, part=replace(remembering.part, prony=PronySeries((0.5,), (1e-6,))))
     assert scene.arms is None
     assert Stepper(scene).start().memory is None
 
@@ -200,7 +202,7 @@ def test_stiffened_material_is_a_multiple():
 
 def test_arms_too_weak_to_matter_change_nothing(sheet, remembering):
     """The memory's own machinery adds no error of its own."""
-    weak = replace(remembering, prony=PronySeries((1e-9, 1e-9), (0.3, 3.0)), accuracy=remembering.accuracy)
+    weak = replace(remembering, part=replace(remembering.part, prony=PronySeries((1e-9, 1e-9), (0.3, 3.0))))
     weak = replace(weak, accuracy=replace(weak.accuracy, folding_error=0.0))
     with_arms, without = (run(scene, figures=False).summary for scene in (weak, sheet))
     assert with_arms["worn area [mm^2]"] == pytest.approx(without["worn area [mm^2]"], rel=1e-7)
@@ -220,7 +222,7 @@ def test_forces_of_a_ring_with_memory_are_in_balance(remembering):
         axisymmetric=True,
         contacts=(replace(remembering.contacts[0], surface=Plane.bore(9.9), force=None),),
         supports=(Support(edges=("left",), y=False),),
-        contour=lifted(remembering.contour, 3.0),
+        part=replace(remembering.part, outline=lifted(remembering.part.outline, 3.0)),
     )
     stepper = Stepper(ring)
     state = stepper.advance(stepper.start())

@@ -38,7 +38,7 @@ def test_circle_loses_exactly_the_shares(circle, scale):
 
 
 def test_shipped_lip_loses_exactly_the_shares(seal):
-    outline = seal.contour
+    outline = seal.part.outline
     on = np.flatnonzero(outline.on(("lip",)))
     bump = np.exp(-(((np.arange(len(on)) - len(on) / 2) / (len(on) / 6)) ** 2))
     share = np.zeros(len(outline))

@@ -41,10 +41,10 @@ def test_fingerprint_changes_with_the_scene(tmp_path, sheet, write_sheet, change
 
 
 def test_fingerprint_changes_with_the_outline(sheet):
-    moved = sheet.contour.moved(np.where(np.arange(len(sheet.contour))[:, None] == 9, 1e-9, 0.0))
-    assert fingerprint(replace(sheet, contour=moved)) != fingerprint(sheet)
-    renamed = replace(sheet.contour, names=("floor",) * 2 + sheet.contour.names[2:])
-    assert fingerprint(replace(sheet, contour=renamed)) != fingerprint(sheet)
+    moved = sheet.part.outline.moved(np.where(np.arange(len(sheet.part.outline))[:, None] == 9, 1e-9, 0.0))
+    assert fingerprint(replace(sheet, part=replace(sheet.part, outline=moved))) != fingerprint(sheet)
+    renamed = replace(sheet.part.outline, names=("floor",) * 2 + sheet.part.outline.names[2:])
+    assert fingerprint(replace(sheet, part=replace(sheet.part, outline=renamed))) != fingerprint(sheet)
 
 
 def test_depth_of_a_lowered_top(rectangle):
@@ -102,7 +102,7 @@ def test_result_file_holds_the_run(finished, sheet):
     result = read_result(finished)
     summary = json.loads((finished / SUMMARY).read_text())
     assert result.scene == "sheet"
-    assert (result.outline == sheet.contour.points).all()
+    assert (result.outline == sheet.part.outline.points).all()
     assert [s.stroke for s in result.snapshots] == [0, 1, 2, 3, 4]
     assert result.kinds == ["stroke"]
     assert result.series["maximum depth [mm]"][-1] == summary["maximum depth [mm]"]
@@ -216,7 +216,7 @@ def test_outlines_that_are_their_own_mirror_image(rectangle, seal):
     assert is_mirrored(points), "a point more to the right on the same straight edge"
     points[3, 1] += 0.1
     assert not is_mirrored(points)
-    assert not is_mirrored(seal.contour.points)
+    assert not is_mirrored(seal.part.outline.points)
 
 
 def test_worn_edge_is_the_whole_top_from_left_to_right(finished):

@@ -24,8 +24,8 @@ from ngwear.loop.run import COMPLETED, GAVE_UP, run
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import Wearing
 from ngwear.results.recorder import Folder
+from ngwear.scene.options import Save
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import Save
 
 FILES = {SERIES, FIELDS, SUMMARY, CHECKPOINT}
 CONTRACT = {

@@ -12,9 +12,13 @@ from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
+from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.boundary import Support
+from ngwear.scene.contact import Contact
+from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import Accuracy, Contact, Scene, Support
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
 
 
@@ -26,12 +30,15 @@ def test_surface_under_force_finds_several_ridges_of_one_height():
     plane = Plane(point=(0.0, 1.05), normal_vector=(0.0, -1.0))
     scene = Scene(
         name="three ridges",
-        contour=Outline(np.array(outline), names, np.ones(len(outline), dtype=bool)),
-        material=NeoHooke(shear=1.0, bulk_modulus=100.0),
+        part=Part(
+            Outline(np.array(outline), names, np.ones(len(outline), dtype=bool)),
+            material=NeoHooke(shear=1.0, bulk_modulus=100.0),
+        ),
         contacts=(Contact(name="lid", edges=("top",), surface=plane, force=0.2, refine=True),),
         supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(Stroke(name="stroke", travel=1.0),), strokes=1),
         accuracy=Accuracy(patch=0.05, coarse=0.3, mounting=0.05),
+        axisymmetric=False,
     )
     state = Stepper(scene).start()
     contact = state.stage.contacts["lid"]
@@ -42,7 +49,7 @@ def test_surface_under_force_finds_several_ridges_of_one_height():
 def test_scene_without_friction_has_the_unknowns_and_the_solver_of_elasticity_and_contact(tmp_path, write_sheet):
     scene = read_scene(write_sheet(tmp_path, ("friction = 0.1", "friction = 0.0")))
     (spec,) = scene.contacts
-    body = Body(scene.contour, mounting_field(scene))
+    body = Body(scene.part.outline, mounting_field(scene))
     contact = OutlineContact(
         spec.name, spec.edges, spec.surface, force_controlled=True, modulus=scene.rubber.shear_modulus
     )

@@ -23,9 +23,9 @@ from ngwear.results.quantities_of_interest import AREA, BY_TIME_STEP, DEPTH, FRI
 from ngwear.results.result_file import read_result
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.accuracy import Accuracy
+from ngwear.scene.options import Save
 from ngwear.scene.program import Program, Stroke, whole_name
 from ngwear.scene.read_scene import read_scene
-from ngwear.scene.scene import Save
 
 FORTH = Stroke(name="forth", travel=18.0, speed=20.0)
 BACK = Stroke(name="back", travel=6.0, direction=-1.0, speed=20.0, pressure=0.5)
