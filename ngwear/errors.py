@@ -8,7 +8,7 @@ from dataclasses import MISSING, fields
 from numbers import Integral, Real
 from typing import Any
 
-LARGEST = 1e15  # of a number in a scene, in any of the units: more is a slip of the pen
+LARGEST, SMALLEST = 1e15, 1e-30  # of a number in a scene, in any of the units: beyond is a slip of the pen
 
 
 class NgwearError(Exception):
@@ -91,6 +91,8 @@ def typed(place: str, value: Any, kind: str) -> Any:
             raise SceneError(place, value, "must be a number")
         if not (math.isfinite(value) and abs(value) < LARGEST):
             raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
+        if 0 < abs(value) < SMALLEST:
+            raise SceneError(place, value, f"must be 0, or a number above {SMALLEST:g}")
         return float(value)
     return value
 
