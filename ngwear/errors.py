@@ -83,9 +83,10 @@ def typed(place: str, value: Any, kind: str) -> Any:
     if kind in ("float", "float | None"):
         if isinstance(value, bool) or not isinstance(value, Real):
             raise SceneError(place, value, "must be a number")
-        if not (math.isfinite(value) and abs(value) < LARGEST):
+        number = float(value)
+        if not (math.isfinite(number) and abs(number) < LARGEST):
             raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
-        return float(value)
+        return number
     return value
 
 
