@@ -89,11 +89,12 @@ def typed(place: str, value: Any, kind: str) -> Any:
     if kind in ("float", "float | None"):
         if isinstance(value, bool) or not isinstance(value, Real):
             raise SceneError(place, value, "must be a number")
-        if not (math.isfinite(value) and abs(value) < LARGEST):
+        number = float(value) if abs(value) < LARGEST else math.inf
+        if not math.isfinite(number):
             raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
-        if 0 < abs(value) < SMALLEST:
+        if 0 < abs(number) < SMALLEST:
             raise SceneError(place, value, f"must be 0, or a number above {SMALLEST:g}")
-        return float(value)
+        return number
     return value
 
 

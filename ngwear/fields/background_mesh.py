@@ -37,6 +37,10 @@ class Background:
 
     def __init__(self, body: Body) -> None:
         self.body = body
+        self._set_up()
+
+    def _set_up(self) -> None:
+        body = self.body
         rule = ng.IntegrationRule(ng.TRIG, RULE)
         points = body.mesh.MapToAllElements(rule, ng.VOL)
         self.shape = (body.mesh.ne, len(rule.points))
@@ -49,7 +53,8 @@ class Background:
         return {"body": self.body}
 
     def __setstate__(self, saved: dict[str, Body]) -> None:
-        self.__init__(**saved)
+        self.body = saved["body"]
+        self._set_up()
 
     def fitted(self, values: Array) -> Array:
         """Coefficients of the quadratic in each element, by least squares; shape (elements, 6, k)."""

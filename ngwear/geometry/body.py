@@ -68,6 +68,8 @@ class Body(Meshed):
         If the new mesh does not pass its gates.
     """
 
+    deformation: ng.GridFunction
+
     def __init__(self, contour: Outline, field: SizeField, *, on_chord: bool = False) -> None:
         self.field = field
         self.base = self.contour = fitted(contour, field, on_chord=on_chord)
@@ -152,8 +154,8 @@ class Body(Meshed):
 def _meshed(contour: Outline, field: SizeField) -> ng.Mesh:
     """Mesh an outline, with shorter edges where it turns until the mesh passes its gates, or none does."""
     for finer in FINER:
-        turns = {"turn": field.turn / finer, "elsewhere": field.elsewhere / finer}
-        closer = replace(field, **turns, per_radius=field.per_radius * finer)
+        turn, elsewhere = field.turn / finer, field.elsewhere / finer
+        closer = replace(field, turn=turn, elsewhere=elsewhere, per_radius=field.per_radius * finer)
         try:
             return section.mesh(contour, mesh_nodes(contour, closer), closer)
         except MeshError as error:

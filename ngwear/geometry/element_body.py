@@ -38,6 +38,8 @@ class ElementBody(Meshed):
         Element of ``cells`` that each mesh element is: quadrilaterals come first.
     """
 
+    deformation: ng.GridFunction
+
     def __init__(self, cells: Cells) -> None:
         self.cells = cells
         self.base = self.contour = cells.contour

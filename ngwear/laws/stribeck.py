@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ngwear.errors import check_fields
+from ngwear.errors import SceneError, check_fields
 from ngwear.laws.base import FrictionLaw, require_number
 
 
@@ -55,6 +55,8 @@ class Stribeck(FrictionLaw):
             require_number(f"friction.{name}", getattr(self, name), above=0.0)
 
     def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
+        if speed is None:
+            raise SceneError("friction", "Stribeck", "depends on the speed: give one [mm/s]")
         gone = math.exp(-((speed / self.speed) ** self.exponent))
         return (self.full + (self.boundary - self.full) * gone + self.viscous * speed,)
 
