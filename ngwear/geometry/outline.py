@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
+from ngwear.geometry.outline_files import Drawing, read_drawing, write_drawing
 
 Array = NDArray[np.float64]
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]*")
@@ -98,6 +100,30 @@ class Outline:
 
     def __len__(self) -> int:
         return len(self.points)
+
+    @classmethod
+    def read(cls, path: Path | str) -> Outline:
+        """Read an outline from a ``.toml``, ``.csv``, ``.step`` or ``.stp`` file.
+
+        Raises
+        ------
+        GeometryError
+            If the file cannot be read or its outline is not simple, closed and counter-clockwise.
+        """
+        try:
+            return cls(*read_drawing(Path(path)))
+        except GeometryError as error:
+            raise GeometryError(f"{path}: {error}") from None
+
+    def write(self, path: Path | str) -> None:
+        """Write the outline to a ``.toml`` file, from which ``read`` gives it back to the last digit.
+
+        Raises
+        ------
+        GeometryError
+            If the file cannot be written.
+        """
+        write_drawing(Drawing(self.points, self.names, self.corners, self.provenance), Path(path))
 
     @classmethod
     def rectangle(cls, x: tuple[float, float], y: tuple[float, float]) -> Outline:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.laws.base import FrictionLaw, require_number
 
 
@@ -48,6 +48,7 @@ class Stribeck(FrictionLaw):
     depends_on_speed = True
 
     def __post_init__(self) -> None:
+        check_fields(self, "friction")
         for name in ("boundary", "full", "viscous"):
             require_number(f"friction.{name}", getattr(self, name))
         for name in ("speed", "exponent"):

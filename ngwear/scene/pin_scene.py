@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.laws import FrictionLaw, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries
 
@@ -101,6 +102,7 @@ class PinMesh:
     folding_error: float = 1e-3
 
     def __post_init__(self) -> None:
+        check_fields(self, "accuracy")
         for name in ("patch", "coarse", "column", "reach", "beside"):
             if not 0 < getattr(self, name) < math.inf:
                 raise SceneError(f"accuracy.{name}", getattr(self, name), "must be finite and greater than 0")
@@ -153,3 +155,15 @@ class PinScene:
                 raise SceneError(f"program.speeds[{i}]", speed, "is given twice")
         if self.pin.series is None:
             raise SceneError("material.prony", None, "is missing: without memory friction does not depend on speed")
+
+    def write(self, path: Path | str) -> None:
+        """Write the scene to a ``.toml`` file.
+
+        Raises
+        ------
+        SceneError
+            For what a scene file cannot say, such as a law or material of one's own.
+        """
+        from ngwear.scene.write_scene import write_pin_scene
+
+        write_pin_scene(self, Path(path))

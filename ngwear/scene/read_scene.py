@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import SceneError, typed
-from ngwear.geometry.outline_files import read_outline
+from ngwear.geometry.outline import Outline
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.boundary import Fluid, Support
 from ngwear.scene.contact import Contact
@@ -95,7 +95,7 @@ def _part(data: dict[str, Any], folder: Path) -> Part:
     outline, material = subtable(data, "contour"), subtable(data, "material")
     known("contour.", outline, {"file"})
     return Part(
-        read_outline(folder / typed("contour.file", get(outline, "contour", "file"), "str")),
+        Outline.read(folder / typed("contour.file", get(outline, "contour", "file"), "str")),
         material=read_material(material),
         prony=read_arms(material["prony"]) if "prony" in material else None,
     )

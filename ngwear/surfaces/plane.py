@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.surfaces.base import RigidSurface
 
 
@@ -27,6 +27,7 @@ class Plane(RigidSurface):
     normal_vector: tuple[float, float]
 
     def __post_init__(self) -> None:
+        check_fields(self, "surface")
         length = math.hypot(*self.normal_vector)
         if not length > 0:
             raise SceneError("surface.normal", self.normal_vector, "must be a vector longer than 0")
