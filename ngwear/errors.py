@@ -8,7 +8,7 @@ from dataclasses import MISSING, fields
 from numbers import Integral, Real
 from typing import Any
 
-LARGEST = 1e15  # of a number in a scene, in any of the units: more is a slip of the pen
+LARGEST, SMALLEST = 1e15, 1e-30  # of a number in a scene, in any of the units: beyond is a slip of the pen
 
 
 class NgwearError(Exception):
@@ -89,9 +89,11 @@ def typed(place: str, value: Any, kind: str) -> Any:
     if kind in ("float", "float | None"):
         if isinstance(value, bool) or not isinstance(value, Real):
             raise SceneError(place, value, "must be a number")
-        number = float(value)
-        if not (math.isfinite(number) and abs(number) < LARGEST):
+        number = float(value) if abs(value) < LARGEST else math.inf
+        if not math.isfinite(number):
             raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
+        if 0 < abs(number) < SMALLEST:
+            raise SceneError(place, value, f"must be 0, or a number above {SMALLEST:g}")
         return number
     return value
 

@@ -29,7 +29,7 @@ class Ripples:
 
         dt - mu dp = G k u f,    f = 1 + 1/lambda^2 - mu^2 p/G - i mu (p/G + 1/lambda^2 - 1)
 
-    (Biot's incremental equations, ``tests/unit/test_ripples.py``). While Re f > 0 Galerkin's method is stable at every
+    (Biot's incremental equations, ``test_ripples.py``). While Re f > 0 Galerkin's method is stable at every
     wavelength. Where Re f <= 0 an equilibrium may still exist, but a wave grows as it runs, by any damping of the
     rubber, and discrete pressures wrinkle at the mesh's wavelength; in practice from Re f of 0.4 to 0.6 on. To take the
     friction from the pressure a way d further downstream turns the last term by the phase k d and makes it a positive
