@@ -35,12 +35,12 @@ class FixedEdges:
 
     Parameters
     ----------
-    edges : tuple of str
+    edges : sequence of str
     x, y, z : bool
         Whether the component is held at zero.
     """
 
-    edges: tuple[str, ...]
+    edges: Sequence[str]
     x: bool = True
     y: bool = True
     z: bool = True

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import netgen.meshing as ngm
 import ngsolve as ng
 import numpy as np
@@ -58,7 +60,6 @@ class ElementBody(MeshedSection):
 
     @property
     def now(self) -> Cells:
-        """The elements where they are now."""
         return self.cells.moved(self.contour.points)
 
     def triangles(self) -> tuple[Array, Index]:
@@ -70,7 +71,7 @@ class ElementBody(MeshedSection):
         quads = corners[corners[:, 3] >= 0]
         return self.now.points[self.vertices], number[np.vstack([corners[:, :3], quads[:, [0, 2, 3]]])]
 
-    def boundary(self, edges: tuple[str, ...]) -> ng.Region:
+    def boundary(self, edges: Sequence[str]) -> ng.Region:
         """As in ``Meshed``; of edges that the section once had, those that it has lost are left out."""
         left = tuple(name for name in edges if name in self.region_names)
         if not left:

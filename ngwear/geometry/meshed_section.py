@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.geometry import section
+from ngwear.geometry.cells import Cells
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.outline import Array, Outline
 
@@ -70,6 +71,11 @@ class MeshedSection(Meshed):
         MeshError
             If an element would fold or be distorted beyond use; the body is left as it was.
         """
+
+    @property
+    def now(self) -> Cells | None:
+        """The elements where they are now, of a section that may lose some."""
+        return None
 
     def triangles(self) -> tuple[Array, NDArray[np.intp]]:
         """Places of the mesh's vertices, and the triangles between them: for pictures."""
