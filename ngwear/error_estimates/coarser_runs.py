@@ -41,9 +41,10 @@ from typing import Any
 import numpy as np
 
 from ngwear.errors import NgwearError
-from ngwear.loop.run import DrawnHere, Result
+from ngwear.loop.result import Result
+from ngwear.loop.run import DrawnHere
 from ngwear.loop.run import run as run_scene
-from ngwear.parallel.workers import Worker
+from ngwear.parallel.workers import Worker, of_modules
 from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
 from ngwear.results.recorder import TORN, Recorder, fingerprint
 from ngwear.results.result_file import Snapshot
@@ -209,8 +210,11 @@ class _Companions:
             self.worker.end()
 
     def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
-        """Let those run that have not left anything."""
+        """Let those run that have not left anything; laws of a script's own keep them in this process."""
         if any(left_by(*run) is None for run in runs):
+            if not of_modules(self.scene):
+                _leave(runs)
+                return
             self.worker = self.worker or Worker(__name__)
             self.worker.do(_leave, runs)
             self.begun += runs

@@ -23,7 +23,7 @@ from typing import Any
 from ngwear.error_estimates.coarser_runs import COARSER, COARSEST, FILE, coarser, leave, left_by, left_of, run_stated
 from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, COMPLETED, OutFolder
-from ngwear.loop.run import Result
+from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
 from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH
 from ngwear.results.recorder import fingerprint
@@ -85,6 +85,7 @@ def run_to_error(
     resume: bool = False,
     progress: bool = False,
     throw: bool = True,
+    figures: bool = True,
     worker: Worker | None = None,
 ) -> Result:
     """Run a scene whose ``accuracy.error`` is given on as fine a level as that takes.
@@ -103,7 +104,7 @@ def run_to_error(
         level = at_level(scene, *at)
         _hand_down(folder, level, done)
         told = _Told(done, at, error)
-        how = {"resume": resume, "progress": progress, "throw": throw, "told": told}
+        how = {"resume": resume, "progress": progress, "throw": throw, "figures": figures, "told": told}
         result, worker = run_stated(level, out=out, enough=error, worker=worker, **how), None
         finer = _after(told.mine, error) if result.status == COMPLETED else None
         if finer is None:

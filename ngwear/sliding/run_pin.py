@@ -6,12 +6,18 @@ import functools
 import json
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ngwear import __version__
+from ngwear.errors import ConvergenceError
 from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
 from ngwear.parallel.sweep import Outcome, sweep
+from ngwear.results.closing_table import closing_table
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.pin_scene import KIND, PinScene
 from ngwear.sliding.pin import COARSER, PinSlide, slide_pin
@@ -28,6 +34,34 @@ READINGS: dict[str, Callable[[PinSlide], float]] = {
 ORDERS = dict.fromkeys(READINGS, 2.0)  # of convergence
 
 
+@dataclass(frozen=True)
+class PinResult:
+    """How a run of a pin ended, and what it found; printed, a table with the stated errors.
+
+    Attributes
+    ----------
+    status : str
+        ``"completed"`` or ``"gave up"``.
+    message : str
+        Why it stopped.
+    summary : dict
+        As in ``summary.json``.
+    series : dict of array
+        Columns as in ``series.csv``, one value a speed; ``pandas.DataFrame`` takes them.
+    folder : Path or None
+        Where its files are.
+    """
+
+    status: str
+    message: str
+    summary: dict[str, Any]
+    series: dict[str, NDArray[Any]]
+    folder: Path | None = None
+
+    def __str__(self) -> str:
+        return closing_table(self.summary)
+
+
 def run_pin(
     scene: PinScene,
     *,
@@ -36,7 +70,8 @@ def run_pin(
     progress: bool = False,
     workers: int | None = None,
     figures: bool = True,
-) -> dict[str, Any]:
+    throw: bool = False,
+) -> PinResult:
     """Slide at every speed of the scene, two at a time, and write series, fields, summary and figures.
 
     A speed that fails does not lose the others: the summary's status is then ``"gave up"`` and its message names it.
@@ -54,16 +89,15 @@ def run_pin(
         Processes; by default as many as cores.
     figures : bool
         Draw the figures.
-
-    Returns
-    -------
-    dict
-        As in ``summary.json``.
+    throw : bool
+        Raise if a speed failed, once the others are saved.
 
     Raises
     ------
     ResultError
         If the folder cannot be used.
+    ConvergenceError
+        If a speed failed and ``throw`` is True.
     """
     wall = time.perf_counter()
     folder = OutFolder(Path(out), POINTS, resume=resume)
@@ -73,14 +107,18 @@ def run_pin(
     pairs = [o.result for o in outcomes if o.ok]
     summary = _summary(scene, outcomes, pairs, time.perf_counter() - wall)
     folder.clear()
-    folder.write_series([row(*pair) for pair in pairs])
+    rows = [row(*pair) for pair in pairs]
+    folder.write_series(rows)
     folder.replace(FIELDS, lambda file: _hdf5(file, scene, pairs, summary))
     folder.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
     if figures and pairs:
         from ngwear.plots.pin import plot_pin
 
         plot_pin(folder.path)
-    return summary
+    if throw and summary["status"] == GAVE_UP:
+        raise ConvergenceError(summary["message"])
+    series = {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())}
+    return PinResult(summary["status"], summary["message"], summary, series, folder.path)
 
 
 def row(coarse: PinSlide, fine: PinSlide) -> dict[str, float]:

@@ -21,7 +21,7 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import SceneError
 from ngwear.geometry.outline import Outline
-from ngwear.loop.run import Result
+from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.state import StrokeReport
 from ngwear.results.result_file import Snapshot
