@@ -60,7 +60,9 @@ class Stage:
                 order=scene.accuracy.order,
                 force_controlled=spec.force is not None,
                 wears=spec.wears,
-                counter=WornProfile.of(spec.surface, scene.accuracy.lengths.patch) if spec.counter_wear_rate > 0 else None,
+                counter=WornProfile.of(spec.surface, scene.accuracy.lengths.patch)
+                if spec.counter_wear_rate > 0
+                else None,
             )
             for spec in scene.contacts
         }

@@ -201,7 +201,9 @@ class Accuracy:
         if self.error is not None:
             return
         finer = 1.0 if self.across is None else ALIKE / self.across
-        stress = self._default("stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2))
+        stress = self._default(
+            "stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2)
+        )
         depth = self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer))
         wear = self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
         jump = self._default("longest_jump", min(1.0, LONGEST_JUMP * wear))
