@@ -7,9 +7,10 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 from ngwear.explanation.assumptions import Assumed
-from ngwear.laws import Constant
+from ngwear.laws import Constant, FrictionLaw
 from ngwear.loop.element_sizes import chosen, laid_out
 from ngwear.loop.law_changes import friction_range
+from ngwear.materials import Folding
 from ngwear.scene.contact import Contact
 from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.scene import Scene
@@ -58,7 +59,7 @@ def explain(
     absent = left_out(scene, pressing, remembers=stage.remembers, assumed=assumed)
     present = _present(scene)
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
-    critical = critical_distance(scene.accuracy.patch, rate, material.plane_strain_modulus)
+    critical = critical_distance(scene.accuracy.lengths.patch, rate, material.plane_strain_modulus)
     return {
         "scene": scene.name,
         "kind": "axisymmetric" if scene.axisymmetric else "plane strain",
@@ -72,14 +73,14 @@ def explain(
         "memory [MB]": {name: brought.memory.get(name, 0.0) for name in present} | _kept(scene, stage, pressing),
         "solver": solver_in_words(problem, _unsymmetric(scene)),
         "numbers": {
-            "element edge in the contact [mm]": scene.accuracy.patch,
+            "element edge in the contact [mm]": scene.accuracy.lengths.patch,
             "K/G [-]": material.bulk_modulus / material.shear_modulus,
             "highest sealed pressure / G [-]": max(s.pressure for s in scene.program.cycle) / material.shear_modulus,
             "longest stroke / critical explicit wear distance [-]": max(s.travel for s in scene.program.cycle)
             / critical,
             **_memory_numbers(scene),
         },
-        **({"arms of the memory": _arms(scene)} if scene.part.prony is not None else {}),
+        **({"arms of the memory": arms} if (arms := _arms(scene)) is not None else {}),
         "absent": {name: verdict.as_dict() for name, verdict in absent.items()},
         "assumed": assumed.told(),
     }
@@ -89,7 +90,8 @@ def _present(scene: Scene) -> dict[str, str]:
     """Each effect that the scene has, in words."""
     present = {"hyperelasticity": type(scene.part.material).__name__}
     present |= {f"contact '{c.name}'": f"edges {', '.join(c.edges)}" for c in scene.contacts}
-    present |= {f"friction at '{c.name}'": _friction_in_words(scene, c) for c in scene.contacts if c.friction_law}
+    frictions = [(c, law) for c in scene.contacts if (law := c.friction_law) is not None]
+    present |= {f"friction at '{c.name}'": _friction_in_words(scene, c, law) for c, law in frictions}
     if scene.fluid is not None:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
         if not any(stroke.pressure for stroke in scene.program.cycle):
@@ -106,8 +108,9 @@ def _present(scene: Scene) -> dict[str, str]:
         for c in scene.contacts
         if c.counter_wear_rate > 0
     }
-    if scene.part.prony is not None:
-        present["memory"] = _memory_in_words(scene)
+    folding = scene.folding
+    if folding is not None:
+        present["memory"] = _memory_in_words(scene, folding)
     return present
 
 
@@ -149,9 +152,10 @@ def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
     if scene.worn_edges:  # area over way, twice, and depth, of each contact and stroke; rates of the states
         sizes = 3 * strokes * len(scene.contacts) * outline + strokes * stage.problem.space.ndof
         found["wear"] = 8 * sizes / MEGABYTE
-    if scene.part.prony is not None:
+    folding = scene.folding
+    if folding is not None:
         points = history_points(stage, pressing.states) if scene.arms is not None else 0
-        found["memory"] = 8 * 4 * points * (len(scene.folding.kept.times) + strokes) / MEGABYTE
+        found["memory"] = 8 * 4 * points * (len(folding.kept.times) + strokes) / MEGABYTE
     return found
 
 
@@ -167,8 +171,7 @@ def _deactivation_in_words(deactivation: Deactivation) -> str:
     return "; ".join(told)
 
 
-def _friction_in_words(scene: Scene, contact: Contact) -> str:
-    law = contact.friction_law
+def _friction_in_words(scene: Scene, contact: Contact, law: FrictionLaw) -> str:
     words = f"{'stick and slip' if scene.may_stick(contact) else 'full sliding'}, {law.words}"
     if not isinstance(law, Constant):
         low, high = friction_range(scene, contact)
@@ -183,8 +186,7 @@ def _wear_in_words(scene: Scene, contact: Contact) -> str:
     return f"by lubrication, {len(rate.distance)} rows; the scene meets k = {low:g} to {high:g} mm²/N"
 
 
-def _memory_in_words(scene: Scene) -> str:
-    folding = scene.folding
+def _memory_in_words(scene: Scene, folding: Folding) -> str:
     kept, fast, slow = len(folding.kept.times), len(folding.fast), len(folding.slow)
     rest = scene.program.rest
     before = f"mounted {rest:g} s before" if math.isfinite(rest) else "mounted and relaxed before"
@@ -192,9 +194,10 @@ def _memory_in_words(scene: Scene) -> str:
 
 
 def _memory_numbers(scene: Scene) -> dict[str, float]:
-    if scene.part.prony is None:
+    folding = scene.folding
+    if folding is None:
         return {}
-    folding, step = scene.folding, min(stroke.duration for stroke in scene.program.cycle)
+    step = min(stroke.duration for stroke in scene.program.cycle)
     return {
         "G0/G of the arms kept [-]": folding.kept.instantaneous,
         "elastic part over long-term stiffness [-]": folding.stiffening,
@@ -205,11 +208,12 @@ def _memory_numbers(scene: Scene) -> dict[str, float]:
     }
 
 
-def _arms(scene: Scene) -> dict[str, str]:
+def _arms(scene: Scene) -> dict[str, str] | None:
     """Each arm: what becomes of it, its stiffness, and Deborah's number of every kind of stroke."""
-    folding = scene.folding
-    told = {}
-    for time, ratio in zip(scene.part.prony.times, scene.part.prony.ratios, strict=True):
+    prony, folding, told = scene.part.prony, scene.folding, {}
+    if prony is None or folding is None:
+        return None
+    for time, ratio in zip(prony.times, prony.ratios, strict=True):
         deborah = {f"{time / stroke.duration:.3g}": None for stroke in scene.program.cycle}
         told[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {folding.fate(time)}"
     return told

@@ -102,8 +102,8 @@ def run_pin(
     wall = time.perf_counter()
     folder = OutFolder(Path(out), POINTS, resume=resume)
     slide = functools.partial(slide_pin, scene.pin, mesh=scene.mesh, vtk=folder.path if scene.vtk else None)
-    points = {"folder": folder.path / POINTS, "resume": resume, "workers": workers, "progress": progress}
-    outcomes = sweep(slide, scene.speeds, **points)
+    points = folder.path / POINTS
+    outcomes = sweep(slide, scene.speeds, folder=points, resume=resume, workers=workers, progress=progress)
     pairs = [o.result for o in outcomes if o.ok]
     summary = _summary(scene, outcomes, pairs, time.perf_counter() - wall)
     folder.clear()
@@ -154,7 +154,7 @@ def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
     bound, at the worst speed. What is integrated over the contact, or fitted to many of its faces, errs by the square
     of what the strains do, and time steps are of second order.
     """
-    folded = max(scene.mesh.folding(scene.pin.series, fine.speed).bound for _, fine in pairs)
+    folded = max(scene.mesh.folding(scene.pin.arms, fine.speed).bound for _, fine in pairs)
     coarse, fine = (readings([pair[k] for pair in pairs]) for k in (0, 1))
     levels = relative_errors(fine, coarse, ratio=COARSER, orders=ORDERS)
     return (
@@ -165,7 +165,7 @@ def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
 
 
 def _summary(scene: PinScene, outcomes: list[Outcome], pairs: list[Pair], wall: float) -> dict[str, Any]:
-    failed = [f"{o.point:g} mm/s: {o.failure.message}" for o in outcomes if not o.ok]
+    failed = [f"{o.point:g} mm/s: {o.failure.message}" for o in outcomes if o.failure is not None]
     summary: dict[str, Any] = {
         "status": GAVE_UP if failed else COMPLETED,
         "message": "; ".join(failed) or "all speeds done",
