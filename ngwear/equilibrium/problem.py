@@ -202,6 +202,11 @@ class Problem:
         responses = [term.response(strain, tangent=tangent) for term in self._volume]
         return sum(stress for stress, _ in responses), sum(slope for _, slope in responses) if tangent else None
 
+    def stress(self) -> tuple[Array, Array]:
+        """Strains of the present state at the material points, and the stress of all terms conjugate to them [MPa]."""
+        stress, _ = self._response(tangent=False)
+        return self.points.strain(self.state.vec.FV().NumPy()), stress
+
     def hoop_force(self) -> float:
         """Radial resultant of the hoop tension of an axisymmetric part, ``2 pi int P_hoop dA`` [N], of all terms."""
         stress, _ = self._response(tangent=False)
