@@ -45,9 +45,9 @@ from ngwear.loop.result import Result
 from ngwear.loop.run import DrawnHere
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.workers import Worker, of_modules
+from ngwear.results.kept_sections import KeptSections
 from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
 from ngwear.results.recorder import TORN, Recorder, fingerprint
-from ngwear.results.result_file import Snapshot
 from ngwear.results.richardson import Reading, relative_errors
 from ngwear.scene.accuracy import LEAST_ACROSS
 from ngwear.scene.scene import Scene
@@ -219,10 +219,10 @@ class _Companions:
             self.worker.do(_leave, runs)
             self.begun += runs
 
-    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
-        """Have the mesh drawn by the worker once it has run what it was told to; without one, with the rest."""
+    def first(self, folder: Path, kept: KeptSections) -> None:
+        """Have the section drawn by the worker once it has run what it was told to; without one, with the rest."""
         if self.worker is not None:
-            self.worker.do(HERE.mesh, folder, scene, first)
+            self.worker.do(HERE.first, folder, kept)
 
     def rest(self, folder: Path) -> None:
         """Draw the figures of the run: half of them in the worker, if it is through with the runs."""
