@@ -9,11 +9,15 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
-from ngwear import __version__
-from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
+from ngwear.effects.contact_patch import Faces
+from ngwear.equilibrium.stepping import Work
+from ngwear.files.hdf5 import mark, put, put_series
+from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder
+from ngwear.files.subnormal import without_subnormals
 from ngwear.parallel.sweep import Outcome, sweep
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.pin_scene import KIND, PinScene
+from ngwear.sliding.patch import Patch
 from ngwear.sliding.pin import COARSER, PinSlide, slide_pin
 from ngwear.units import UNITS
 
@@ -68,14 +72,21 @@ def run_pin(
     wall = time.perf_counter()
     folder = OutFolder(Path(out), POINTS, resume=resume)
     slide = functools.partial(slide_pin, scene.pin, mesh=scene.mesh, vtk=folder.path if scene.vtk else None)
-    points = {"folder": folder.path / POINTS, "resume": resume, "workers": workers, "progress": progress}
-    outcomes = sweep(slide, scene.speeds, **points)
+    outcomes = sweep(
+        slide,
+        scene.speeds,
+        folder=folder.path / POINTS,
+        resume=resume,
+        workers=workers,
+        progress=progress,
+        classes=(PinSlide, Patch, Faces, Work),
+    )
     pairs = [o.result for o in outcomes if o.ok]
     summary = _summary(scene, outcomes, pairs, time.perf_counter() - wall)
     folder.clear()
     folder.write_series([row(*pair) for pair in pairs])
     folder.replace(FIELDS, lambda file: _hdf5(file, scene, pairs, summary))
-    folder.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
+    folder.write_json(SUMMARY, summary)
     if figures and pairs:
         from ngwear.plots.pin import plot_pin
 
@@ -162,14 +173,16 @@ def _hdf5(file: IO[bytes], scene: PinScene, pairs: list[Pair], summary: dict[str
     import h5py
 
     with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = __version__, scene.name, KIND
+        mark(h5, scene.name)
+        h5.attrs["kind"] = KIND
         h5.attrs["thickness [mm]"] = scene.pin.thickness
-        h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(summary)
+        h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(without_subnormals(summary))
         put_series(h5, [row(*pair) for pair in pairs])
         for number, (_, slide) in enumerate(pairs):
             group = h5.create_group(f"speeds/{number:03d}")
             group.attrs["speed [mm/s]"] = slide.speed
-            group["edge of the contact [mm]"] = slide.patch.edge
-            group["faces/corners, deformed [mm]"] = slide.faces.corners
-            group["faces/centres, undeformed [mm]"] = slide.faces.reference
-            group["faces/pressure [MPa]"] = slide.faces.pressure
+            put(group, "edge of the contact [mm]", slide.patch.edge)
+            faces = group.create_group("faces")
+            put(faces, "corners, deformed [mm]", slide.faces.corners)
+            put(faces, "centres, undeformed [mm]", slide.faces.reference)
+            put(faces, "pressure [MPa]", slide.faces.pressure)
