@@ -89,7 +89,8 @@ def typed(place: str, value: Any, kind: str) -> Any:
     if kind in ("float", "float | None"):
         if isinstance(value, bool) or not isinstance(value, Real):
             raise SceneError(place, value, "must be a number")
-        number = float(value) if abs(value) < LARGEST else math.inf
+        size: Any = abs(value)  # of its own type: a whole number may be too large for a float
+        number = float(value) if size < LARGEST else math.inf
         if not math.isfinite(number):
             raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
         if 0 < abs(number) < SMALLEST:

@@ -12,6 +12,7 @@ from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.locator import Locator
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.body import Body
+from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 RULE = 6  # order of the integration rule: 12 points a triangle; with 6 points the fit is unstable
@@ -67,7 +68,7 @@ class Seat:
     Parameters
     ----------
     background : Background
-    body : Body
+    body : Meshed
     kinematics : Kinematics
     points : MaterialPoints
         Of the body.
@@ -79,7 +80,7 @@ class Seat:
         self,
         background: Background,
         *,
-        body: Body,
+        body: Meshed,
         kinematics: Kinematics,
         points: MaterialPoints,
         displacement: ng.GridFunction,

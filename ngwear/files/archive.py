@@ -12,9 +12,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import __version__
 from ngwear.errors import ResultError
 from ngwear.files.plain_data import Packer, Unpacker
+from ngwear.files.version import VERSION
 
 ABOUT, TREE, VALUES = "about", "tree", "values {}"
 Members = dict[str, NDArray[Any]]
@@ -49,7 +49,7 @@ def packed(content: Any, kind: Format, classes: Iterable[type] = ()) -> Members:
     """
     packer = Packer(classes)
     tree = packer.pack(content)
-    about = {"format": f"ngwear {kind.name}", "version": kind.version, "ngwear": __version__}
+    about = {"format": f"ngwear {kind.name}", "version": kind.version, "ngwear": VERSION}
     texts = {ABOUT: json.dumps(about), TREE: json.dumps(tree, separators=(",", ":"))}
     members: Members = {name: np.frombuffer(text.encode("ascii"), dtype=np.uint8) for name, text in texts.items()}
     return members | {VALUES.format(i): array for i, array in enumerate(packer.arrays())}
@@ -89,7 +89,7 @@ def read(path: Path, kind: Format, classes: Iterable[type] = ()) -> Any:
 def other_version(path: Path, kind: Format, found: object, made_by: object) -> ResultError:
     """What to tell of a file of an older or newer version."""
     return ResultError(
-        f"{path} is a {kind.name} of version {found}, written by ngwear {made_by}; this is ngwear {__version__}, which "
+        f"{path} is a {kind.name} of version {found}, written by ngwear {made_by}; this is ngwear {VERSION}, which "
         f"reads version {kind.version}: {kind.remedy}, or take ngwear {made_by}"
     )
 

@@ -6,17 +6,30 @@ holds the name as it is in ``series.csv``.
 
 from __future__ import annotations
 
+import io
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import __version__
 from ngwear.errors import ResultError
 from ngwear.files.subnormal import without_subnormals
+from ngwear.files.version import VERSION
 
+MANY = 1000  # numbers; below, compression saves nothing
 LAYOUT = 2  # 1: as ngwear 0.1 wrote it, slashes in names and no attribute "layout"
+
+
+def write(file: IO[bytes], fill: Callable[[Any], None]) -> None:
+    """Write what ``fill`` puts into an HDF5 file. It is made in memory: HDF5 crashes on a disk that becomes full."""
+    import h5py
+
+    memory = io.BytesIO()
+    with h5py.File(memory, "w") as h5:
+        fill(h5)
+    file.write(memory.getbuffer())
 
 
 def stored_name(name: str) -> str:
@@ -30,11 +43,12 @@ def name_of(item: Any) -> str:
     return str(item.attrs.get("name", item.name.rsplit("/", 1)[-1]))
 
 
-def put(group: Any, name: str, values: Any) -> None:
-    """Store values under a name."""
+def put(group: Any, name: str, values: Any, *, compressed: bool = False) -> None:
+    """Store values under a name; compressed where they are many."""
     stored = _free(group, stored_name(name))
-    group[stored] = without_subnormals(values if isinstance(values, np.ndarray) else np.asarray(values))
-    _note(group[stored], name, stored)
+    data = without_subnormals(np.asarray(values))
+    how = {"compression": "gzip", "compression_opts": 4, "shuffle": True} if compressed and data.size >= MANY else {}
+    _note(group.create_dataset(stored, data=data, **how), name, stored)
 
 
 def subgroup(group: Any, name: str) -> Any:
@@ -74,7 +88,7 @@ def get_series(h5: Any) -> dict[str, NDArray[Any]]:
 
 def mark(h5: Any, scene: str) -> None:
     """Note whose file it is."""
-    h5.attrs["ngwear"], h5.attrs["layout"], h5.attrs["scene"] = __version__, LAYOUT, scene
+    h5.attrs["ngwear"], h5.attrs["layout"], h5.attrs["scene"] = VERSION, LAYOUT, scene
 
 
 def require_layout(h5: Any, file: Path) -> None:
@@ -90,6 +104,6 @@ def require_layout(h5: Any, file: Path) -> None:
     made_by, layout = str(h5.attrs["ngwear"]), int(h5.attrs.get("layout", 1))
     if layout != LAYOUT:
         raise ResultError(
-            f"{file} has layout {layout}, written by ngwear {made_by}; this is ngwear {__version__}, which reads "
+            f"{file} has layout {layout}, written by ngwear {made_by}; this is ngwear {VERSION}, which reads "
             f"layout {LAYOUT}: run the scene again into another folder, or take ngwear {made_by}"
         )

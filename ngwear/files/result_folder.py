@@ -11,9 +11,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
-from ngwear import __version__
 from ngwear.errors import ResultError
 from ngwear.files.subnormal import without_subnormals
+from ngwear.files.version import VERSION
 
 SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.npz"
 OLD_CHECKPOINT = "checkpoint.pkl"  # of ngwear 0.1: a file that can run any program, which is not read any more
@@ -43,7 +43,7 @@ class OutFolder:
             raise ResultError(f"{self.path} is a file; give a folder for the results")
         if begun == CHECKPOINT and (self.path / OLD_CHECKPOINT).exists():
             raise ResultError(
-                f"{self.path} holds a run of ngwear 0.1 ({OLD_CHECKPOINT}); this is ngwear {__version__}, which cannot "
+                f"{self.path} holds a run of ngwear 0.1 ({OLD_CHECKPOINT}); this is ngwear {VERSION}, which cannot "
                 "go on with it: run the scene anew in another folder, or finish it with ngwear 0.1"
             )
         if not resume and (self.path / begun).exists():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -13,42 +13,14 @@ from numpy.typing import NDArray
 from ngwear.errors import MeshError
 from ngwear.geometry import nodal, saved_mesh, section
 from ngwear.geometry.harmonic import HarmonicFill
-from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.meshed_section import BoundaryEdges, MeshedSection
 from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 FINER = (1.0, 2.0, 4.0)  # how much less the outline may turn along an element edge: a curved one cuts its corner
 
 
-@dataclass(frozen=True)
-class BoundaryEdges:
-    """The mesh's boundary edges in the order of the outline (counter-clockwise).
-
-    Attributes
-    ----------
-    element : array of int, shape (m,)
-        Boundary element numbers.
-    vertices : array of int, shape (m, 2)
-        Mesh vertices at start and end.
-    edge : array of int, shape (m,)
-        Mesh edge numbers.
-    t : array, shape (m, 2)
-        Outline parameters at start and end; the last one ends at n, the outline's number of points.
-    names : array of str, shape (m,)
-    """
-
-    element: NDArray[np.intp]
-    vertices: NDArray[np.intp]
-    edge: NDArray[np.intp]
-    t: Array
-    names: NDArray[np.str_]
-
-    def on(self, edges: tuple[str, ...]) -> NDArray[np.intp]:
-        """Return the positions of the boundary edges that carry one of the names."""
-        return np.flatnonzero(np.isin(self.names, edges))
-
-
-class Body(Meshed):
+class Body(MeshedSection):
     """A meshed section whose outline can move a little without a new mesh.
 
     ``base`` is the outline that was meshed, ``contour`` the present one: it has the same points,
@@ -68,8 +40,6 @@ class Body(Meshed):
     MeshError
         If the new mesh does not pass its gates.
     """
-
-    deformation: ng.GridFunction
 
     def __init__(self, contour: Outline, field: SizeField, *, on_chord: bool = False) -> None:
         self.field = field
@@ -114,13 +84,6 @@ class Body(Meshed):
         return HarmonicFill(matrix, np.fromiter(space.FreeDofs(), dtype=bool))
 
     def move_to(self, contour: Outline) -> None:
-        """Let the mesh follow to an outline that has the points of ``base``, displaced.
-
-        Raises
-        ------
-        MeshError
-            If an element would fold or be distorted beyond use; the body is left as it was.
-        """
         displacement = contour.points - self.base.points
         controls = self.base.controls(displacement)
         line, field = self.outline, self.deformation
@@ -151,10 +114,6 @@ class Body(Meshed):
         lowest = float(np.min(jacobian(self.mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 2), ng.VOL))))
         self._deform()
         return lowest
-
-    @property
-    def size(self) -> float:
-        return float(np.ptp(self.contour.points, axis=0).max())
 
 
 def _meshed(contour: Outline, field: SizeField) -> tuple[ng.Mesh, NDArray[np.intp]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -159,7 +160,7 @@ class Outline:
         width = half + np.roll(half, 1)
         return np.where(width > 0, width, 1.0)
 
-    def on(self, edges: tuple[str, ...]) -> NDArray[np.bool_]:
+    def on(self, edges: Sequence[str]) -> NDArray[np.bool_]:
         """Return which segments belong to the named edges, shape (n,)."""
         return np.array([name in edges for name in self.names])
 

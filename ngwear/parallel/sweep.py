@@ -17,11 +17,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ngwear import __version__
 from ngwear.errors import ResultError, SceneError
 from ngwear.files.archive import Format, packed, read, write
 from ngwear.files.plain_data import by_name
 from ngwear.files.result_folder import OutFolder
+from ngwear.files.version import VERSION
 from ngwear.parallel.workers import one_thread_pool
 
 FORMAT = Format("result of a sweep", 2, "delete it to compute it anew")  # 1: a pickle
@@ -198,7 +198,7 @@ class _Store:
         self.folder, self.classes = OutFolder(path, "", resume=True), classes
         if resume and (old := next(path.glob(f"*{OLD}"), None)) is not None:
             raise ResultError(
-                f"{old} holds a result of ngwear 0.1; this is ngwear {__version__}, which cannot read it: delete such "
+                f"{old} holds a result of ngwear 0.1; this is ngwear {VERSION}, which cannot read it: delete such "
                 "files to compute them anew, give another folder, or take ngwear 0.1"
             )
 

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files.hdf5 import get_series, require_layout
+from ngwear.files.hdf5 import get_series, require_layout, stored_name
 from ngwear.plots.style import write
 from ngwear.scene.pin_scene import KIND
 
@@ -78,7 +78,7 @@ def read_pin(folder: Path | str) -> PinFile:
             groups = [h5[f"speeds/{k:03d}"] for k in order]
             sheets = [
                 SheetPicture(
-                    float(g.attrs["speed [mm/s]"]),
+                    float(g.attrs[stored_name("speed [mm/s]")]),
                     g["edge of the contact [mm]"][()],
                     g["faces/corners, deformed [mm]"][()],
                     g["faces/pressure [MPa]"][()],

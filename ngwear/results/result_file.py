@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from ngwear.errors import ResultError
 from ngwear.files.hdf5 import get_series, name_of, require_layout
 from ngwear.files.result_folder import FIELDS
+from ngwear.results.surface_text import surfaces_of
+from ngwear.surfaces import RigidSurface
 
 Array = NDArray[np.float64]
 WEAR_RATE = "specific wear rate [mm^2 per N]"  # attribute of a contact
@@ -24,15 +26,15 @@ CONTACT, PART = "contact", "part"  # what a group of a stroke holds: a contact, 
 class Snapshot:
     """Outline and contact profiles at one solved stroke, as a run keeps them and as read from ``result.h5``.
 
-    ``time`` [s] is infinite where a stroke has no speed; ``mesh`` is empty but at the first stroke, ``elements`` but at
-    the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
+    ``time`` [s] is infinite where a stroke has no speed; ``section`` (see ``ngwear.results.section``) and ``elements``
+    are empty but at the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
     """
 
     stroke: float
     kind: str
     outline: Array
     profiles: dict[str, dict[str, Array]]
-    mesh: dict[str, Array] = field(default_factory=dict)
+    section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
     elements: dict[str, Array] = field(default_factory=dict)
     time: float = math.inf
 
@@ -49,8 +51,7 @@ class ResultFile:
     edges : tuple of str, length n
         Name of each of its segments.
     wear_rates : dict
-        Specific wear rate k of each contact that wears, its mean over the run [mm²/N]; empty in files of before it was
-        kept.
+        Specific wear rate k of each contact that wears, its mean over the run [mm²/N].
     worn_edges : tuple of str
     remembers : bool
         Whether the rubber has memory.
@@ -63,6 +64,8 @@ class ResultFile:
     series : dict of array
         Columns as in ``series.csv``; row i belongs to snapshot i.
     snapshots : list of Snapshot
+    surfaces : dict of str to RigidSurface
+        The rigid surface of each contact in its final place, of those that a file can say.
     """
 
     scene: str
@@ -76,6 +79,7 @@ class ResultFile:
     errors: dict[str, float]
     series: dict[str, Array]
     snapshots: list[Snapshot]
+    surfaces: dict[str, RigidSurface] = field(default_factory=dict)
 
     @property
     def kinds(self) -> list[str]:
@@ -123,6 +127,7 @@ def read_result(folder: Path | str) -> ResultFile:
                 errors=json.loads(h5.attrs.get("summary", "{}")).get("error estimates", {}),
                 series=get_series(h5),
                 snapshots=[_snapshot(group) for group in h5["strokes"].values()],
+                surfaces=surfaces_of(h5),
             )
     except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
         raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
@@ -140,7 +145,7 @@ def _snapshot(group: Any) -> Snapshot:
         kind=str(group.attrs["kind"]),
         outline=group["outline [mm]"][()],
         profiles=found[CONTACT],
-        mesh=found[PART].get("mesh", {}),
+        section=found[PART].get("section", {}),
         elements=found[PART].get("elements", {}),
         time=float(group.attrs.get("time [s]", math.inf)),
     )

@@ -74,6 +74,13 @@ class Pin:
         return law_of(self.friction)
 
     @property
+    def arms(self) -> PronySeries:
+        """The series; SceneError for elastic rubber."""
+        if self.series is None:
+            raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
+        return self.series
+
+    @property
     def contact_radius(self) -> float:
         """A guess between Hertz's contact on a half-space and that on a thin bonded layer [mm]."""
         modulus = 4 * self.material.shear_modulus

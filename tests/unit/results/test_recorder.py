@@ -106,7 +106,7 @@ def test_result_file_holds_the_run(finished, sheet):
     assert [s.stroke for s in result.snapshots] == [0, 1, 2, 3, 4]
     assert result.kinds == ["stroke"]
     assert result.series["maximum depth [mm]"][-1] == summary["maximum depth [mm]"]
-    assert result.snapshots[0].mesh["triangles"].shape[1] == 3
+    assert result.snapshots[0].section["triangles"].shape[1] == 6
     assert result.at(2.2, "stroke").stroke == 2
 
 

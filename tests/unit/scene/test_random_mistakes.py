@@ -99,6 +99,9 @@ def tried(folder, count, seed):
     scenes = [(path.parent, tomllib.loads(path.read_text())) for path in SHIPPED]
     for number in range(count):
         source, data = rng.choice(scenes)
+        if "prony" in data["material"] and number % 10:  # fitting a spectrum takes two seconds
+            data = copy.deepcopy(data)
+            data["material"]["prony"].pop("smoothing", None)
         data = spoiled(data, rng)
         if isinstance(data.get("contour"), dict) and isinstance(data["contour"].get("file"), str):
             data["contour"]["file"] = str(source / data["contour"]["file"])
