@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
+from ngwear.loop.checkpoint import load, save
 from ngwear.loop.result import Result
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
@@ -87,7 +88,7 @@ def run(
     """
     on_step, draw = on_step or (lambda state: None), draw or DrawnHere()
     folder = None if out is None else Folder(Path(out), scene, resume=resume)
-    saved = folder.load() if folder is not None and resume else None
+    saved = load(folder, scene) if folder is not None and resume else None
     wall, cpu = time.perf_counter(), time.process_time()
     state, recorder = saved if saved is not None else (None, Recorder(scene))
     wall, cpu = wall - recorder.wall, cpu - recorder.cpu
@@ -144,7 +145,7 @@ def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, 
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     recorder.add(state, wall=recorder.wall)
     if folder is not None:
-        folder.save(state, recorder)
+        save(folder, state, recorder)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from ngwear.equilibrium.stepping import Work
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.outline import Outline
 from ngwear.loop.stage import Stage
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 from ngwear.wear.jump_control import JumpControl
 
@@ -152,14 +153,18 @@ class State:
         """Where the memory lives, if the rubber has one."""
         return None if self.memory is None else self.memory.background
 
-    def __getstate__(self) -> dict[str, Any]:
-        saved = dict(self.__dict__)
-        saved["stage"] = (self.stage.scene, self.stage.body)
-        return saved
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same state of, to the last bit; of the scene only what a run changes."""
+        data = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "stage"}
+        return data | {"accuracy": self.stage.scene.accuracy, "body": self.stage.body}
 
-    def __setstate__(self, saved: dict[str, Any]) -> None:
-        self.__dict__.update(saved)
-        self.stage = Stage(*saved["stage"], self.background)
+    @classmethod
+    def from_data(cls, data: dict[str, Any], scene: Scene) -> State:
+        """The state again, of a run of the same scene."""
+        there = replace(scene, accuracy=data["accuracy"])
+        memory: CycleMemory | None = data["memory"]
+        stage = Stage(there, data["body"], None if memory is None else memory.background)
+        return cls(stage, **{f.name: data[f.name] for f in fields(cls) if f.name != "stage"})
 
     def saved(self) -> dict[str, Any]:
         """What ``take_back`` needs, should a step fail."""

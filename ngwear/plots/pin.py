@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files.result_folder import get_series
+from ngwear.files.hdf5 import get_series, require_layout, stored_name
 from ngwear.plots.style import write
 from ngwear.scene.pin_scene import KIND
 
@@ -65,19 +65,20 @@ def read_pin(folder: Path | str) -> PinFile:
     Raises
     ------
     ResultError
-        If the file is missing or damaged.
+        If the file is missing, damaged, or of another layout.
     """
     import h5py
 
     file = Path(folder) / "result.h5"
     try:
         with h5py.File(file, "r") as h5:
+            require_layout(h5, file)
             series = get_series(h5)
             order = np.argsort(series["speed [mm/s]"])
             groups = [h5[f"speeds/{k:03d}"] for k in order]
             sheets = [
                 SheetPicture(
-                    float(g.attrs["speed [mm/s]"]),
+                    float(g.attrs[stored_name("speed [mm/s]")]),
                     g["edge of the contact [mm]"][()],
                     g["faces/corners, deformed [mm]"][()],
                     g["faces/pressure [MPa]"][()],
