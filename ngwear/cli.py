@@ -10,8 +10,8 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ngwear import __version__
 from ngwear.errors import NgwearError, ResultError
+from ngwear.files.version import VERSION
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
 BESIDE = (
@@ -24,7 +24,7 @@ BESIDE = (
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ngwear", description="Friction and abrasive wear of rubber parts.")
-    parser.add_argument("--version", action="version", version=f"ngwear {__version__}")
+    parser.add_argument("--version", action="version", version=f"ngwear {VERSION}")
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="run a scene to its end")
     run.add_argument("scene", type=Path, metavar="SCENE.toml")
@@ -169,22 +169,14 @@ def _explain(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from ngwear.explanation.assumptions import Assumed
-    from ngwear.explanation.text import lines
-    from ngwear.scene.pin_scene import PinScene
+    from ngwear.explanation.explain import explain
     from ngwear.scene.read_scene import read_scene
 
     scene, assumed = read_scene(options.scene), Assumed().replaced(options.assume)
-    if isinstance(scene, PinScene):
-        from ngwear.explanation.explain_pin import explain_pin
-
-        found = explain_pin(scene, assumed=assumed)
-    else:
-        from ngwear.explanation.explain import explain
-
-        shown = sys.stderr.isatty()
-        with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
-            found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
-    print(json.dumps(found, indent=2) if options.json else "\n".join(lines(found)))
+    shown = sys.stderr.isatty()
+    with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
+        found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
+    print(found.json if options.json else found)
     return OK
 
 

@@ -128,6 +128,11 @@ class FluidPressure(Term):
         first = [(step, path[touching[path]][:1]) for step, path in self._paths]
         return np.concatenate([self._body.outline.t[edge, 0 if step == 1 else 1] for step, edge in first])
 
+    @property
+    def shares(self) -> np.ndarray:
+        """What chi is on each mesh edge, in the order of the outline, shape (m,) [-]."""
+        return self.wetted.vec.FV().NumPy()[self._unknown]
+
     def leak_pressure(self) -> tuple[float, str]:
         """Fluid pressure that the contacts hold as they are [MPa], and the name of the edge that would give way first.
 

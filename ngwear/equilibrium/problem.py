@@ -210,6 +210,11 @@ class Problem:
         slopes = (slope for _, slope in responses if slope is not None)
         return sum((stress for stress, _ in responses), np.zeros(())), sum(slopes, np.zeros(()))
 
+    def stress(self) -> tuple[Array, Array]:
+        """Strains of the present state at the material points, and the stress of all terms conjugate to them [MPa]."""
+        stress, _ = self._response(tangent=False)
+        return self.points.strain(self.state.vec.FV().NumPy()), stress
+
     def hoop_force(self) -> float:
         """Radial resultant of the hoop tension of an axisymmetric part, ``2 pi int P_hoop dA`` [N], of all terms."""
         stress, _ = self._response(tangent=False)

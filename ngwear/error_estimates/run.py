@@ -139,3 +139,16 @@ def with_accuracy(scene: Scene | PinScene, accuracy: str | float | Accuracy | No
     except (ValueError, TypeError):
         raise SceneError("accuracy", accuracy, f"must be one of {list(PRESETS)}, or a number below 1") from None
     return replace(scene, accuracy=scene.accuracy.given(new))
+
+
+def read_result(folder: Path | str) -> Result | PinResult:
+    """What a run, of any kind, has left in its folder.
+
+    Raises
+    ------
+    ResultError
+        If there is no run, or its files are damaged.
+    """
+    from ngwear.plots.pin import is_pin_run
+
+    return PinResult.read(folder) if is_pin_run(Path(folder)) else Result.read(folder)

@@ -20,7 +20,7 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
         Constants that the scene does not give.
     """
     from ngwear.explanation.effect_costs import MEGABYTE, costs
-    from ngwear.explanation.explain import solver_in_words
+    from ngwear.explanation.explain_wear import solver_in_words
     from ngwear.sliding.pin import PinStage, coarsened
 
     pin, assumed = scene.pin, assumed or Assumed()

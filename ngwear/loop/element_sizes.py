@@ -23,7 +23,7 @@ def laid_out(scene: Scene) -> Scene:
         return scene
     size = float(np.ptp(scene.part.outline.points, axis=0).min())
     edge, coarse = MOUNTING * size, COARSE * size
-    lengths = replace(accuracy, across=None, error=None, patch=edge, mounting=edge, coarse=coarse)
+    lengths = replace(accuracy, across=None, error=None, peak_error=None, patch=edge, mounting=edge, coarse=coarse)
     return replace(scene, accuracy=lengths)
 
 

@@ -177,6 +177,33 @@ class Result:
             name, found.kind, found.stroke, along, place, profile["pressure [MPa]"], profile["gap [mm]"]
         )
 
+    def plot(
+        self, field: str = "von Mises stress", *, stroke: float | None = None, kind: str | None = None
+    ) -> Figure:
+        """Figure of the loaded section, filled by a field, between its surfaces, with the pressures along the contacts.
+
+        Parameters
+        ----------
+        field : str
+            One of ``ngwear.results.section.FIELDS``; the unit may be left out.
+        stroke : float or None
+            A kept one; the last unless given.
+        kind : str or None
+            Name of the stroke in the cycle; the one with the highest fluid pressure unless given.
+
+        Raises
+        ------
+        ResultError
+            If there is no such field, or the stroke's section was not kept.
+        """
+        from ngwear.plots.loaded_section import draw_section
+        from ngwear.results.kept_sections import KeptSections
+
+        if self.recorder is None:
+            return draw_section(read_result(self._folder), field=field, stroke=stroke, kind=kind)
+        kept = KeptSections.in_run(self.recorder)
+        return draw_section(kept, field=field, stroke=stroke, kind=kind)
+
     @property
     def mesh(self) -> ng.Mesh:
         """NGSolve's mesh of the worn section, undeformed.

@@ -12,35 +12,35 @@ from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.loop.result import Result
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
+from ngwear.results.kept_sections import KeptSections
 from ngwear.results.recorder import Folder, Recorder
-from ngwear.results.result_file import Snapshot
 from ngwear.scene.scene import Scene
 
 
 class Drawing(Protocol):
     """What draws the figures of a run."""
 
-    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
-        """Draw the mesh, or have it drawn meanwhile."""
+    def first(self, folder: Path, kept: KeptSections) -> None:
+        """Draw the loaded section of the part before it wears, or have it drawn meanwhile."""
 
     def rest(self, folder: Path) -> None:
-        """Draw all that is not there; it is when this returns."""
+        """Draw all figures; they are there when this returns."""
 
 
 class DrawnHere:
     """What draws the figures of a run in this process."""
 
-    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
-        """Draw the mesh."""
-        from ngwear.plots.wear import plot_mesh
+    def first(self, folder: Path, kept: KeptSections) -> None:
+        """Draw the loaded section."""
+        from ngwear.plots.wear import plot_section
 
-        plot_mesh(folder, scene, first)
+        plot_section(folder, kept)
 
     def rest(self, folder: Path, share: tuple[int, int] = (0, 1)) -> None:
-        """Draw all that is not there, or this process's share of it (``ngwear.plots.wear.plot``)."""
+        """Draw all, or this process's share of it (``ngwear.plots.wear.plot``)."""
         from ngwear.plots.wear import plot
 
-        plot(folder, again=False, share=share)
+        plot(folder, share=share)
 
 
 def run(
@@ -69,7 +69,7 @@ def run(
     throw : bool
         Raise when the run gives up; else return a result that says why. What it had is saved either way.
     figures : bool
-        Draw into the folder: the mesh once the part is mounted, all other figures at the end.
+        Draw into the folder: the loaded section once the part is mounted, all figures at the end.
     on_step : callable or None
         Called with the state after mounting and after each accepted step.
     errors : callable or None
@@ -99,7 +99,7 @@ def run(
                 state = stepper.start()
                 _keep(folder, state, recorder, wall, cpu)
                 if folder is not None and figures and recorder.snapshots:
-                    draw.mesh(folder.path, scene.name, recorder.snapshots[0])
+                    draw.first(folder.path, recorder.sections)
                 on_step(state)
             bar.begin(state)
             while not stepper.finished(state):

@@ -232,6 +232,8 @@ class StrokeReport:
         Elements after the stroke's wear, where a scene deactivates some.
     loaded : dict of str to array
         Displacement of their points and stresses in them at equilibrium, likewise.
+    section : dict of str to array
+        The loaded section (``ngwear.loop.section_snapshot``) at strokes that are kept, else empty.
     """
 
     phase: int
@@ -251,3 +253,4 @@ class StrokeReport:
     ledger: Ledger
     cells: Cells | None = None
     loaded: dict[str, Array] = field(default_factory=dict)
+    section: dict[str, NDArray[np.generic]] = field(default_factory=dict)

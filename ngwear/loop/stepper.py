@@ -20,6 +20,7 @@ from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.loop.refinement import outgrown, wanted_size
 from ngwear.loop.remeshing import is_due, remesh, still_ahead
+from ngwear.loop.section_snapshot import section_snapshot
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.wear_step import Wearing
@@ -200,7 +201,7 @@ class Stepper:
             share = (state.strokes - saved["strokes"]) / program.strokes
             off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)
             state.control.update(ratio, cycles, off)
-            if state.strokes in (*self.scene.marks, program.strokes):
+            if state.strokes in self.scene.kept:
                 self._look(state)
             return state
 
@@ -354,6 +355,7 @@ class Stepper:
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """What there is to see at the stroke's equilibrium."""
         stage = state.stage
+        kept = state.strokes + sliding.repeats in self.scene.kept
         return StrokeReport(
             phase=index,
             last_stroke=state.strokes,
@@ -372,6 +374,7 @@ class Stepper:
             ledger=state.ledger.copy(),
             cells=state.cells,
             loaded={} if self._losses is None else self._losses.loaded(stage),
+            section=section_snapshot(stage) if kept else {},
         )
 
     def _approach(self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool) -> None:

@@ -13,9 +13,9 @@ from ngwear.loop.stage import Stage
 def cauchy_stress(stage: Stage) -> Any:
     """Cauchy stress of the hyperelastic part, a 3 x 3 coefficient function [MPa] on the undeformed mesh.
 
-    ``sigma = 2/J dev((psi_1 + I1 psi_2) b - psi_2 b^2) + (Ks (J - 1) + p) I`` with ``b = J^(-2/3) F F^T``, its invariants,
-    the slopes psi_i of the isochoric energy by them, and the unknown p of ``effects.elasticity``. The
-    third row and column are out of the section: along the circumference, or across the plane.
+    ``sigma = 2/J dev((psi_1 + I1 psi_2) b - psi_2 b^2) + (Ks (J - 1) + p) I`` with ``b = J^(-2/3) F F^T``, its
+    invariants, the slopes psi_i of the isochoric energy by them, and the unknown p of ``effects.elasticity``. The third
+    row and column are out of the section: along the circumference, or across the plane.
 
     Parameters
     ----------

@@ -12,13 +12,16 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import __version__
 from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
+from ngwear.files.version import VERSION
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import divided
+from ngwear.results.kept_sections import KeptSections
 from ngwear.results.result_file import Snapshot
+from ngwear.results.section import put_section
+from ngwear.results.surface_text import surface_text
 from ngwear.scene.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
 
@@ -76,10 +79,9 @@ class Recorder:
             plain = state.cells is None
             self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
-        for number, report in enumerate(state.reports):
+        for report in state.reports:
             self.rows.append(self._row(state, report, wall))
-            mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else {}
-            self.snapshots.append(self._snapshot(report, mesh))
+            self.snapshots.append(self._snapshot(report))
 
     def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
         scene = self.scene
@@ -145,7 +147,7 @@ class Recorder:
         out["elements worn away [-]"] = int(counts[Fate.WORN])
         return out
 
-    def _snapshot(self, report: Any, mesh: dict[str, Array]) -> Snapshot:
+    def _snapshot(self, report: Any) -> Snapshot:
         profiles = {
             name: {
                 "reference [mm]": p.reference,
@@ -161,11 +163,17 @@ class Recorder:
             profiles[name]["counter-surface depth [mm]"] = counter.depth
         kind = self.scene.program.cycle[report.phase].name
         last, elements = report.last_stroke, {}
-        if report.cells is not None and last in (0, *self.scene.marks, self.scene.program.strokes):
+        if report.cells is not None and last in self.scene.kept:
             cells = report.cells
             elements = {"points [mm]": cells.points, "corners": cells.corners, "fate": cells.fate} | report.loaded
         stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
-        return Snapshot(stroke, kind, report.contour.points, profiles, mesh, elements, time)
+        return Snapshot(stroke, kind, report.contour.points, profiles, report.section, elements, time)
+
+    @property
+    def sections(self) -> KeptSections:
+        """The loaded sections so far."""
+        surfaces = {contact.name: contact.surface for contact in self.scene.contacts}
+        return KeptSections(self.scene.name, [s for s in self.snapshots if s.section], surfaces)
 
     def summary(self, state: Any, status: str, message: str) -> dict[str, Any]:
         """The run in a few numbers."""
@@ -223,7 +231,7 @@ class Recorder:
             "CPU time [s]": round(self.cpu, 3),
             "peak memory [MB]": round(peak_memory(), 1),
             "units": UNITS,
-            "ngwear": __version__,
+            "ngwear": VERSION,
         }
         if scene.deactivation is not None and scene.deactivation.damage is not None:
             torn = sum(out[f"area lost by {cause} [mm^2]"] for cause in ("tearing", "coming loose"))
@@ -252,17 +260,6 @@ class Recorder:
                     f"{least['stroke [-]']}; what is given is the seal as if it held"
                 )
         return found
-
-
-def _deformed_mesh(state: Any, phase: int) -> dict[str, Array]:
-    """Deformed vertices and triangles of one stroke of the cycle."""
-    from ngwear.effects.base import DISPLACEMENT
-    from ngwear.geometry.section import mesh_arrays
-
-    stage = state.stage
-    points, triangles = mesh_arrays(stage.body.mesh) if state.cells is None else stage.body.triangles()
-    u = state.phases[phase].vector[stage.problem.part(DISPLACEMENT)].reshape(2, -1)[:, : len(points)].T
-    return {"points [mm]": points + u, "triangles": triangles}
 
 
 class Folder(OutFolder):
@@ -306,7 +303,7 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
 
     scene = recorder.scene
     with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"] = __version__
+        h5.attrs["ngwear"] = VERSION
         h5.attrs["scene"] = scene.name
         h5.attrs["units"] = json.dumps(UNITS)
         h5.attrs["summary"] = json.dumps(summary)
@@ -327,6 +324,7 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
             rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
             mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
             group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
+            group.attrs["surface"] = surface_text(spec.surface)
             if spec.wear_law is not None:
                 group.attrs["wear law"] = spec.wear_law.words
         put_series(h5, recorder.rows)
@@ -339,6 +337,6 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
             for contact, profile in snapshot.profiles.items():
                 for name, values in profile.items():
                     group[f"{contact}/{name}"] = values
-            for part, content in (("mesh", snapshot.mesh), ("elements", snapshot.elements)):
-                for name, values in content.items():
-                    group[f"{part}/{name}"] = values
+            for name, values in snapshot.elements.items():
+                group[f"elements/{name}"] = values
+            put_section(group, snapshot.section)

@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
 from ngwear.files.result_folder import FIELDS, get_series
+from ngwear.results.surface_text import surfaces_of
+from ngwear.surfaces import RigidSurface
 
 Array = NDArray[np.float64]
 
@@ -20,15 +22,15 @@ Array = NDArray[np.float64]
 class Snapshot:
     """Outline and contact profiles at one solved stroke, as a run keeps them and as read from ``result.h5``.
 
-    ``time`` [s] is infinite where a stroke has no speed; ``mesh`` is empty but at the first stroke, ``elements`` but at
-    the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
+    ``time`` [s] is infinite where a stroke has no speed; ``section`` (see ``ngwear.results.section``) and ``elements``
+    are empty but at the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
     """
 
     stroke: float
     kind: str
     outline: Array
     profiles: dict[str, dict[str, Array]]
-    mesh: dict[str, Array] = field(default_factory=dict)
+    section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
     elements: dict[str, Array] = field(default_factory=dict)
     time: float = math.inf
 
@@ -59,6 +61,8 @@ class ResultFile:
     series : dict of array
         Columns as in ``series.csv``; row i belongs to snapshot i.
     snapshots : list of Snapshot
+    surfaces : dict of str to RigidSurface
+        The rigid surface of each contact in its final place, of those that a file can say.
     """
 
     scene: str
@@ -72,6 +76,7 @@ class ResultFile:
     errors: dict[str, float]
     series: dict[str, Array]
     snapshots: list[Snapshot]
+    surfaces: dict[str, RigidSurface] = field(default_factory=dict)
 
     @property
     def kinds(self) -> list[str]:
@@ -107,8 +112,8 @@ def read_result(folder: Path | str) -> ResultFile:
                         group.attrs["stroke"].item(),
                         str(group.attrs["kind"]),
                         group["outline [mm]"][()],
-                        {k: v for k, v in parts.items() if k not in ("mesh", "elements")},
-                        parts.get("mesh", {}),
+                        {k: v for k, v in parts.items() if k not in ("section", "elements")},
+                        parts.get("section", {}),
                         parts.get("elements", {}),
                         float(group.attrs.get("time [s]", math.inf)),
                     )
@@ -133,6 +138,7 @@ def read_result(folder: Path | str) -> ResultFile:
                 errors=json.loads(h5.attrs.get("summary", "{}")).get("error estimates", {}),
                 series=get_series(h5),
                 snapshots=snapshots,
+                surfaces=surfaces_of(h5),
             )
     except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
         raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error

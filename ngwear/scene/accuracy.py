@@ -85,8 +85,10 @@ class Accuracy:
         that are not given go along: the stresses' with the square of the element edge, the depth's, the wear's, up to
         0.05, and the longest jump with the edge.
     error : float or None
-        Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
+        Relative error of the greatest depth that the run shall state [-]; the run chooses all else
         (``ngwear.error_estimates.run_to_error``).
+    peak_error : float or None
+        Relative error of the peak pressure that it shall state as well [-]; with ``error`` only.
     """
 
     patch: float | None = None
@@ -102,6 +104,7 @@ class Accuracy:
     parts: int = 1
     across: float | None = None
     error: float | None = None
+    peak_error: float | None = None
 
     @classmethod
     def preset(cls, name: str) -> Accuracy:
@@ -244,6 +247,12 @@ class Accuracy:
                 "accuracy.across and judge by runs of your own"
             )
             require(self.error >= LEAST_ERROR, "accuracy.error", self.error, says)
+        peak = self.peak_error
+        if peak is not None:
+            says = "goes with accuracy.error, that of the depth: give it, too"
+            require(self.error is not None, "accuracy.peak_error", peak, says)
+            says = f"must lie between {LEAST_ERROR:g} and 1; 0.1 is ten per cent"
+            require(LEAST_ERROR <= peak < 1, "accuracy.peak_error", peak, says)
 
 
 def _usual_grading(across: float | None) -> float:

@@ -23,7 +23,7 @@ from ngwear.scene.read_material import read_arms, read_material
 from ngwear.scene.read_pin import pin_scene
 from ngwear.scene.scene import Scene
 from ngwear.scene.toml_values import coordinate, get, known, record, subtable, tables
-from ngwear.surfaces import Cylinder, Plane, RigidSurface
+from ngwear.surfaces import Cylinder, Plane, RigidSurface, bore, rod
 
 TABLES = {
     *("scene", "contour", "material", "contact", "fluid", "support"),
@@ -40,8 +40,8 @@ def _rename(function: Callable[..., Any], **names: str) -> Callable[..., Any]:
 
 
 _SURFACES: dict[str, tuple[Callable[..., RigidSurface], set[str]]] = {
-    "rod": (Plane.rod, {"diameter"}),
-    "bore": (Plane.bore, {"diameter"}),
+    "rod": (rod, {"diameter"}),
+    "bore": (bore, {"diameter"}),
     "plane": (_rename(Plane, normal="normal_vector"), {"point", "normal"}),
     "cylinder": (Cylinder, {"centre", "radius", "push"}),
 }

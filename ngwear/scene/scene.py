@@ -198,6 +198,11 @@ class Scene:
         return tuple(self.program.parts * strokes for strokes in self.save.strokes)
 
     @property
+    def kept(self) -> tuple[int, ...]:
+        """Strokes as they are solved whose sections are kept, new and at the end among them."""
+        return (0, *self.marks, self.program.strokes)
+
+    @property
     def worn_edges(self) -> tuple[str, ...]:
         """Names of the edges that wear."""
         return tuple(e for c in self.contacts if c.wears for e in c.edges)

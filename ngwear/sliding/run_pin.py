@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import functools
 import json
 import time
@@ -13,9 +14,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import __version__
-from ngwear.errors import ConvergenceError
-from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
+from ngwear.errors import ConvergenceError, ResultError
+from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SERIES, SUMMARY, OutFolder, put_series
+from ngwear.files.version import VERSION
 from ngwear.parallel.sweep import Outcome, sweep
 from ngwear.results.closing_table import closing_table
 from ngwear.results.richardson import relative_errors
@@ -58,8 +59,41 @@ class PinResult:
     series: dict[str, NDArray[Any]]
     folder: Path | None = None
 
+    @classmethod
+    def read(cls, folder: Path | str) -> PinResult:
+        """Read what a run has left in its folder.
+
+        Raises
+        ------
+        ResultError
+            If it is missing or damaged.
+        """
+        path = Path(folder)
+        try:
+            summary = json.loads((path / SUMMARY).read_text(encoding="utf-8"))
+            with (path / SERIES).open(newline="", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+            series = {name: np.array([float(row[name]) for row in rows]) for name in (rows[0] if rows else ())}
+            return cls(summary["status"], summary["message"], summary, series, path)
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise ResultError(f"{path} cannot be read as a run of a pin: {error}") from error
+
     def __str__(self) -> str:
         return closing_table(self.summary)
+
+    def plot(self) -> list[Path]:
+        """Draw the figures into the folder; return their files.
+
+        Raises
+        ------
+        ResultError
+            If the run kept nothing, or its file is damaged.
+        """
+        if self.folder is None:
+            raise ResultError("the run kept nothing: give it a folder by out=...")
+        from ngwear.plots.pin import plot_pin
+
+        return list(plot_pin(self.folder))
 
 
 def run_pin(
@@ -200,7 +234,7 @@ def _hdf5(file: IO[bytes], scene: PinScene, pairs: list[Pair], summary: dict[str
     import h5py
 
     with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = __version__, scene.name, KIND
+        h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = VERSION, scene.name, KIND
         h5.attrs["thickness [mm]"] = scene.pin.thickness
         h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(summary)
         put_series(h5, [row(*pair) for pair in pairs])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
 from ngwear.errors import SceneError, check_fields
@@ -34,20 +35,6 @@ class Plane(RigidSurface):
         nx, ny = self.normal_vector
         object.__setattr__(self, "normal_vector", (nx / length, ny / length))
 
-    @classmethod
-    def rod(cls, diameter: float) -> Plane:
-        """Shaft of the given diameter [mm] on the axis of an axisymmetric scene."""
-        if not diameter > 0:
-            raise SceneError("surface.diameter", diameter, "must be greater than 0 mm")
-        return cls(point=(0.0, diameter / 2), normal_vector=(0.0, 1.0))
-
-    @classmethod
-    def bore(cls, diameter: float) -> Plane:
-        """Hole of the given diameter [mm] around the axis of an axisymmetric scene."""
-        if not diameter > 0:
-            raise SceneError("surface.diameter", diameter, "must be greater than 0 mm")
-        return cls(point=(0.0, diameter / 2), normal_vector=(0.0, -1.0))
-
     def gap(self, x: Any, y: Any) -> Any:
         nx, ny = self.normal_vector
         return (x - self.point[0]) * nx + (y - self.point[1]) * ny
@@ -62,3 +49,31 @@ class Plane(RigidSurface):
     @property
     def approach(self) -> tuple[float, float]:
         return self.normal_vector
+
+
+def rod(diameter: float) -> Plane:
+    """Shaft of the given diameter [mm] on the axis of an axisymmetric scene.
+
+    Raises
+    ------
+    SceneError
+        For a diameter that is not positive.
+    """
+    return _around_axis(diameter, outwards=1.0)
+
+
+def bore(diameter: float) -> Plane:
+    """Hole of the given diameter [mm] around the axis of an axisymmetric scene.
+
+    Raises
+    ------
+    SceneError
+        For a diameter that is not positive.
+    """
+    return _around_axis(diameter, outwards=-1.0)
+
+
+def _around_axis(diameter: float, *, outwards: float) -> Plane:
+    if not (isinstance(diameter, Real) and diameter > 0):
+        raise SceneError("surface.diameter", diameter, "must be greater than 0 mm")
+    return Plane(point=(0.0, diameter / 2), normal_vector=(0.0, outwards))

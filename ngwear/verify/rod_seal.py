@@ -14,6 +14,7 @@ k times force and distance; the sum takes each solve's force at its end for all 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,7 @@ from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.state import State, StrokeReport
 from ngwear.results.result_file import Snapshot
+from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Scene
 from ngwear.verify.base import Bound, Check, Stopwatch
@@ -33,14 +35,14 @@ CASE = "rod_seal"
 
 
 def shipped_scene(name: str = "scene.toml", folder: str = "rod_seal") -> Scene:
-    """Read a scene of this checkout's ``geometries``."""
+    """Read a scene of this checkout's ``geometries``, by the usual lengths if it asks for an error."""
     path = Path(__file__).parents[2] / "geometries" / folder / name
     if not path.is_file():
         raise SceneError("verify", str(path), "the shipped scenes come with the repository: run this in a checkout")
     scene = read_scene(path)
     if not isinstance(scene, Scene):
         raise SceneError("verify", str(path), "must be a scene of a part that wears")
-    return scene
+    return scene if scene.accuracy.error is None else replace(scene, accuracy=Accuracy())
 
 
 def run_and_watch(scene: Scene) -> tuple[Result, list[StrokeReport]]:
