@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,7 @@ class Snapshot:
     outline: Array
     profiles: dict[str, dict[str, Array]]
     section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
-    elements: dict[str, Array] = field(default_factory=dict)
+    elements: dict[str, NDArray[Any]] = field(default_factory=dict)
     time: float = math.inf
 
 
