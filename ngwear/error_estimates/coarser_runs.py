@@ -215,11 +215,8 @@ class _Companions:
             self.worker.end()
 
     def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
-        """Let those run that have not left anything; laws of a script's own keep them in this process."""
-        if any(left_by(*run) is None for run in runs):
-            if not of_modules(self.scene):
-                _leave(runs)
-                return
+        """Let those run that have not left anything; with laws of a script's own this process does, once it can."""
+        if of_modules(self.scene) and any(left_by(*run) is None for run in runs):
             self.worker = self.worker or Worker(__name__)
             self.worker.do(_leave, runs)
             self.begun += runs
@@ -265,6 +262,8 @@ class _Companions:
 
     def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for what one of them leaves."""
+        if not of_modules(self.scene):
+            _leave([(scene, file)])
         while left_by(scene, file) is None and self.worker is not None and self.worker.alive and not self.worker.idle:
             time.sleep(POLL)
         return left_by(scene, file) or {"gave up": "it ended without a word"}

@@ -197,11 +197,8 @@ class Result:
             If there is no such field, or the stroke's section was not kept.
         """
         from ngwear.plots.loaded_section import draw_section
-        from ngwear.results.kept_sections import KeptSections
 
-        if self.recorder is None:
-            return draw_section(read_result(self._folder), field=field, stroke=stroke, kind=kind)
-        kept = KeptSections.in_run(self.recorder)
+        kept = read_result(self._folder) if self.recorder is None else self.recorder.sections
         return draw_section(kept, field=field, stroke=stroke, kind=kind)
 
     @property
