@@ -19,6 +19,7 @@ from ngwear.results.result_file import Snapshot, read_result
 
 if TYPE_CHECKING:
     import ngsolve as ng
+    from matplotlib.figure import Figure
 
     from ngwear.loop.state import State
     from ngwear.results.recorder import Recorder
@@ -177,9 +178,7 @@ class Result:
             name, found.kind, found.stroke, along, place, profile["pressure [MPa]"], profile["gap [mm]"]
         )
 
-    def plot(
-        self, field: str = "von Mises stress", *, stroke: float | None = None, kind: str | None = None
-    ) -> Figure:
+    def plot(self, field: str = "von Mises stress", *, stroke: float | None = None, kind: str | None = None) -> Figure:
         """Figure of the loaded section, filled by a field, between its surfaces, with the pressures along the contacts.
 
         Parameters
