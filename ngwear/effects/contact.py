@@ -219,7 +219,7 @@ class OutlineContact(UnilateralContact):
         return dofs, np.array(shapes)
 
     def set_worn(self, depth: Array) -> None:
-        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P, if the contact wears."""
+        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P, where any is kept."""
         if self.worn is not None:
             self._interpolate(self.worn, self._along_outline(depth))
 
