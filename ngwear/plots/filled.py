@@ -36,7 +36,8 @@ def fill(axes: Axes, section: Section, values: Array, *, cmap: str, norm: Normal
             offset = start + len(place) * np.arange(len(mine))[:, None, None]
             triangles.append((pieces + offset).reshape(-1, 3))
             start += len(place) * len(mine)
-    drawn = Triangulation(*np.concatenate(points).T, np.concatenate(triangles))
+    x, y = np.concatenate(points).T
+    drawn = Triangulation(x, y, np.concatenate(triangles))
     return axes.tripcolor(drawn, np.concatenate(colours), shading="gouraud", cmap=cmap, norm=norm)
 
 
@@ -93,7 +94,7 @@ def outline(section: Section, *, pieces: int = 4) -> list[Array]:
         start, middle = section.points[loop[:, 0]], section.points[loop[:, 1]]
         end = np.roll(start, -1, axis=0)
         parts = [f[None] * p[:, None] for f, p in zip(_parabola(s), (start, middle, end), strict=True)]
-        polygons.append(sum(parts).reshape(-1, 2))
+        polygons.append(sum(parts, np.zeros(())).reshape(-1, 2))
     return polygons
 
 

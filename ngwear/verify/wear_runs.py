@@ -117,7 +117,7 @@ def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
         share = report.repeats / state.strokes
         last = share_of_last(distance, before)
         book.mean = last * book.mean + (1 - last) * pressure_over_volume_ratio(scene, profile)
-        book.worn += spec.specific_wear_rate * distance * book.mean
+        book.worn += spec.wear_rate.highest * distance * book.mean
         book.load += share * (load - book.load)
         yield state
 
