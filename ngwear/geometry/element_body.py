@@ -11,7 +11,7 @@ from ngwear.errors import MeshError
 from ngwear.geometry.body import BoundaryEdges
 from ngwear.geometry.cells import HOLE, Cells
 from ngwear.geometry.meshed import Meshed
-from ngwear.geometry.outline import Array, Outline
+from ngwear.geometry.outline import Outline
 
 Index = NDArray[np.intp]
 FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded
@@ -64,15 +64,6 @@ class ElementBody(Meshed):
     def now(self) -> Cells:
         """The elements where they are now."""
         return self.cells.moved(self.contour.points)
-
-    def triangles(self) -> tuple[Array, Index]:
-        """Places of the mesh's vertices, and triangles of them, two for each quadrilateral: for pictures."""
-        cells = self.cells
-        number = np.zeros(len(cells.points), dtype=np.intp)
-        number[self.vertices] = np.arange(len(self.vertices))
-        corners = cells.corners[self.numbers]
-        quads = corners[corners[:, 3] >= 0]
-        return self.now.points[self.vertices], number[np.vstack([corners[:, :3], quads[:, [0, 2, 3]]])]
 
     def boundary(self, edges: tuple[str, ...]) -> ng.Region:
         """As in ``Meshed``; of edges that the section once had, those that it has lost are left out."""

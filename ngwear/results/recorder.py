@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 import pickle
-from dataclasses import dataclass, field, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -169,6 +171,13 @@ class Recorder:
         stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
         return Snapshot(stroke, kind, report.contour.points, profiles, report.section, elements, time)
 
+    def add_sections(self, sections: Sequence[dict[str, NDArray[np.generic]]]) -> None:
+        """Add the loaded sections of the cycle's strokes to the last rows of these, where there are none yet."""
+        for stroke, section in zip(self.scene.program.cycle, sections, strict=True):
+            last = max((k for k, s in enumerate(self.snapshots) if s.kind == stroke.name), default=None)
+            if last is not None and not self.snapshots[last].section:
+                self.snapshots[last] = replace(self.snapshots[last], section=section)
+
     @property
     def sections(self) -> KeptSections:
         """The loaded sections so far."""
@@ -295,7 +304,9 @@ class Folder(OutFolder):
         if recorder.rows:
             self.write_series(recorder.rows)
         self.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
-        self.replace(FIELDS, lambda file: _hdf5(file, recorder, summary))
+        fields = io.BytesIO()  # not the file itself: on a full disk HDF5 crashes where what it writes is compressed
+        _hdf5(fields, recorder, summary)
+        self.replace(FIELDS, lambda file: file.write(fields.getvalue()))
 
 
 def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
@@ -319,12 +330,12 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
         if damage is not None:
             h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
         contacts = h5.create_group("contacts")
-        for spec in scene.contacts:
+        for number, spec in enumerate(scene.contacts):
             group = contacts.create_group(spec.name)
             rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
             mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
             group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
-            group.attrs["surface"] = surface_text(spec.surface)
+            group.attrs["surface"], group.attrs["number"] = surface_text(spec.surface), number
             if spec.wear_law is not None:
                 group.attrs["wear law"] = spec.wear_law.words
         put_series(h5, recorder.rows)

@@ -29,6 +29,8 @@ def surface_of(text: str) -> RigidSurface | None:
 
 
 def surfaces_of(h5: Any) -> dict[str, RigidSurface]:
-    """The surface of each contact in an open result file; those that it cannot say are left out."""
-    found = {name: surface_of(group.attrs.get("surface", '{"type": ""}')) for name, group in h5.get("contacts", {}).items()}
+    """The surface of each contact in an open result file, in the scene's order, of those that it can say."""
+    contacts = h5.get("contacts", {})
+    names = sorted(contacts, key=lambda name: contacts[name].attrs.get("number", 0))
+    found = {name: surface_of(contacts[name].attrs.get("surface", '{"type": ""}')) for name in names}
     return {name: surface for name, surface in found.items() if surface is not None}
