@@ -29,7 +29,7 @@ class Ripples:
 
         dt - mu dp = G k u f,    f = 1 + 1/lambda^2 - mu^2 p/G - i mu (p/G + 1/lambda^2 - 1)
 
-    (Biot's incremental equations, ``tests/unit/test_ripples.py``). While Re f > 0 Galerkin's method is stable at every
+    (Biot's incremental equations, ``test_ripples.py``). While Re f > 0 Galerkin's method is stable at every
     wavelength. Where Re f <= 0 an equilibrium may still exist, but a wave grows as it runs, by any damping of the
     rubber, and discrete pressures wrinkle at the mesh's wavelength; in practice from Re f of 0.4 to 0.6 on. To take the
     friction from the pressure a way d further downstream turns the last term by the phase k d and makes it a positive
@@ -46,7 +46,7 @@ class Ripples:
         ahead = along + ng.Grad(unknowns.state[DISPLACEMENT]) * along  # its sign has no tangent
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
         way = ng.IfPos(ahead[0] * tangent[0] + ahead[1] * tangent[1], 1.0, -1.0)
-        shift = SHIFT * contact.lengths(unknowns.body) * way
+        shift = SHIFT * contact.lengths(unknowns) * way
         change = ng.Grad(unknowns.v).Trace() * along
         virtual = change[0] * tangent[0] + change[1] * tangent[1]
         self.moved = (unknowns.trial[contact.pressure_name] - self._smooth) * shift * virtual

@@ -41,9 +41,10 @@ from typing import Any
 import numpy as np
 
 from ngwear.errors import NgwearError
-from ngwear.loop.run import DrawnHere, Result
+from ngwear.loop.result import Result
+from ngwear.loop.run import DrawnHere
 from ngwear.loop.run import run as run_scene
-from ngwear.parallel.workers import Worker
+from ngwear.parallel.workers import Worker, of_modules
 from ngwear.results.kept_sections import KeptSections
 from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
 from ngwear.results.recorder import TORN, Recorder, fingerprint
@@ -138,6 +139,11 @@ def stated(
     return out
 
 
+def excess(errors: Mapping[str, float], asked: Mapping[str, float]) -> float:
+    """The largest of the stated errors over those asked for, by their names [-]; 0 if none of them is stated."""
+    return max((errors[name] / limit for name, limit in asked.items() if name in errors), default=0.0)
+
+
 def growth(mine: Reading) -> float:
     """The power of the area lost in all with which the greatest depth grows along the last half of a run, 0 to 1.
 
@@ -158,16 +164,16 @@ def run_stated(
     throw: bool = True,
     figures: bool = True,
     told: Callable[[dict[str, Any]], None] | None = None,
-    enough: float | None = None,
+    enough: Mapping[str, float] | None = None,
     worker: Worker | None = None,
 ) -> Result:
     """Run a scene and, beside it in a second process, its companions; ``summary["error estimates"]`` is from all.
 
     Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Where the first
-    companion shows an error of the greatest depth of no more than ``enough``, taken as of first order, there is no
-    coarsest. Companions that give up lose nothing: without the coarsest, errors are taken as of first order; without
-    both, those of the mesh are not known. The summary then warns. They run in ``worker``, which ends with this, or in
-    one that begins here. It draws half of the figures, too, if it has nothing else to do by then.
+    companion, taken as of first order, shows no error above those of ``enough``, by their names, there is no coarsest.
+    Companions that give up lose nothing: without the coarsest, errors are taken as of first order; without both, those
+    of the mesh are not known. The summary then warns. They run in ``worker``, which ends with this, or in one that
+    begins here. It draws half of the figures, too, if it has nothing else to do by then.
     """
     companions = _Companions(scene, Path(out), enough, worker)
 
@@ -195,7 +201,7 @@ class _Companions:
     Those of an earlier process are taken from there. The process draws as well (``ngwear.loop.run.Drawing``).
     """
 
-    def __init__(self, scene: Scene, folder: Path, enough: float | None, worker: Worker | None) -> None:
+    def __init__(self, scene: Scene, folder: Path, enough: Mapping[str, float] | None, worker: Worker | None) -> None:
         self.scene, self.enough, self.worker = scene, enough, worker
         self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
         self.begun: list[tuple[Scene, Path]] = []
@@ -209,8 +215,8 @@ class _Companions:
             self.worker.end()
 
     def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
-        """Let those run that have not left anything."""
-        if any(left_by(*run) is None for run in runs):
+        """Let those run that have not left anything; with laws of a script's own this process does, once it can."""
+        if of_modules(self.scene) and any(left_by(*run) is None for run in runs):
             self.worker = self.worker or Worker(__name__)
             self.worker.do(_leave, runs)
             self.begun += runs
@@ -240,7 +246,7 @@ class _Companions:
         ratio = coarser_by(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
         known = stated(self.scene, embedded, mine, other["reading"], ratio=ratio)
         left = [(other, "companion")]
-        if self.enough is None or known[DEPTH] > self.enough:
+        if self.enough is None or excess(known, self.enough) > 1:
             self._begin(self.runs[1:])
             coarsest = self._left(*self.runs[1])
             if "gave up" in coarsest:
@@ -256,6 +262,8 @@ class _Companions:
 
     def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for what one of them leaves."""
+        if not of_modules(self.scene):
+            _leave([(scene, file)])
         while left_by(scene, file) is None and self.worker is not None and self.worker.alive and not self.worker.idle:
             time.sleep(POLL)
         return left_by(scene, file) or {"gave up": "it ended without a word"}

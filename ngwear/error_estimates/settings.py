@@ -38,7 +38,7 @@ def knobs(scene: AnyScene) -> tuple[Knob, ...]:
 
     Increments of the load are none: where all of a contact slides, an equilibrium does not depend on the way to it, and
     where friction sticks, hardly: with increments of a quarter the clamps of the shipped torn seal carry as much to
-    1e-5 (``tests/unit/test_cost_runs.py``, slow). Only memory has a time step.
+    1e-5 (``tests/unit/error_estimates/test_cost_runs.py``, slow). Only memory has a time step.
     """
     if isinstance(scene, PinScene):
         return _pin_knobs(scene)

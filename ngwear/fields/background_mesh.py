@@ -10,6 +10,7 @@ from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.locator import Locator
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.body import Body
+from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 RULE = 6  # order of the integration rule: 12 points a triangle; with 6 points the fit is unstable
@@ -37,6 +38,10 @@ class Background:
 
     def __init__(self, body: Body) -> None:
         self.body = body
+        self._set_up()
+
+    def _set_up(self) -> None:
+        body = self.body
         rule = ng.IntegrationRule(ng.TRIG, RULE)
         points = body.mesh.MapToAllElements(rule, ng.VOL)
         self.shape = (body.mesh.ne, len(rule.points))
@@ -49,7 +54,8 @@ class Background:
         return {"body": self.body}
 
     def __setstate__(self, saved: dict[str, Body]) -> None:
-        self.__init__(**saved)
+        self.body = saved["body"]
+        self._set_up()
 
     def fitted(self, values: Array) -> Array:
         """Coefficients of the quadratic in each element, by least squares; shape (elements, 6, k)."""
@@ -62,7 +68,7 @@ class Seat:
     Parameters
     ----------
     background : Background
-    body : Body
+    body : Meshed
     kinematics : Kinematics
     points : MaterialPoints
         Of the body.
@@ -74,7 +80,7 @@ class Seat:
         self,
         background: Background,
         *,
-        body: Body,
+        body: Meshed,
         kinematics: Kinematics,
         points: MaterialPoints,
         displacement: ng.GridFunction,

@@ -1,7 +1,7 @@
 """The integration points of a part: strain there from the unknowns, nodal forces and stiffness back.
 
 All points are treated at once, as arrays. A symbolic energy in NGSolve is evaluated element by element once
-for each pair of strain components: five times the time for the same numbers (``tests/unit/test_material_points.py``
+for each pair of strain components: five times the time for the same numbers (``test_material_points.py``
 compares both), and assembly is half of a run.
 """
 

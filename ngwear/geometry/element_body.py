@@ -2,25 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import netgen.meshing as ngm
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import MeshError
-from ngwear.geometry.body import BoundaryEdges
 from ngwear.geometry.cells import HOLE, Cells
 from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.meshed_section import BoundaryEdges, MeshedSection
 from ngwear.geometry.outline import Outline
 
 Index = NDArray[np.intp]
 FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded
 
 
-class ElementBody(Meshed):
+class ElementBody(MeshedSection):
     """What of a section is left, meshed with its living elements alone: lost ones bring no unknown and no energy.
 
-    It has the interface of ``Body``. The displacement of the outline since the mesh was made is the mesh's deformation;
+    The displacement of the outline since the mesh was made is the mesh's deformation;
     it ends at the first row of nodes inside.
 
     Parameters
@@ -57,15 +59,10 @@ class ElementBody(Meshed):
         self._deform()
 
     @property
-    def size(self) -> float:
-        return float(np.ptp(self.contour.points, axis=0).max())
-
-    @property
     def now(self) -> Cells:
-        """The elements where they are now."""
         return self.cells.moved(self.contour.points)
 
-    def boundary(self, edges: tuple[str, ...]) -> ng.Region:
+    def boundary(self, edges: Sequence[str]) -> ng.Region:
         """As in ``Meshed``; of edges that the section once had, those that it has lost are left out."""
         left = tuple(name for name in edges if name in self.region_names)
         if not left:
@@ -108,6 +105,13 @@ class ElementBody(Meshed):
         found = np.array([element[tuple(sorted(pair))] for pair in vertices.tolist()])
         t = np.stack([np.arange(n), np.arange(1, n + 1)], axis=1).astype(float)
         return BoundaryEdges(found[:, 0], vertices, found[:, 1], t, np.array(self.base.names))
+
+
+def elements(body: Meshed) -> ElementBody:
+    """The body as one whose elements can be lost; MeshError for one of another kind."""
+    if not isinstance(body, ElementBody):
+        raise MeshError(f"the elements of a {type(body).__name__} cannot be lost")
+    return body
 
 
 def _mesh(cells: Cells) -> tuple[ng.Mesh, Index, Index]:

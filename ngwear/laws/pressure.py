@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ngwear.errors import check_fields
 from ngwear.laws.base import FrictionLaw, require_number
 
 
@@ -44,6 +45,7 @@ class ByPressure(FrictionLaw):
     depends_on_pressure = True
 
     def __post_init__(self) -> None:
+        check_fields(self, "friction")
         require_number("friction.light", self.light)
         require_number("friction.limit", self.limit)
         require_number("friction.pressure", self.pressure, above=0.0)

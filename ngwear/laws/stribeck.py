@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from ngwear.errors import SceneError, check_fields
 from ngwear.laws.base import FrictionLaw, require_number
 
 
@@ -47,12 +48,15 @@ class Stribeck(FrictionLaw):
     depends_on_speed = True
 
     def __post_init__(self) -> None:
+        check_fields(self, "friction")
         for name in ("boundary", "full", "viscous"):
             require_number(f"friction.{name}", getattr(self, name))
         for name in ("speed", "exponent"):
             require_number(f"friction.{name}", getattr(self, name), above=0.0)
 
     def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
+        if speed is None:
+            raise SceneError("friction", "Stribeck", "depends on the speed: give one [mm/s]")
         gone = math.exp(-((speed / self.speed) ** self.exponent))
         return (self.full + (self.boundary - self.full) * gone + self.viscous * speed,)
 

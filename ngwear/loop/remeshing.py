@@ -30,11 +30,10 @@ def is_due(state: State) -> bool:
     Never so if the scene lets the nodes move as far as they can.
     """
     body, scene = state.stage.body, state.stage.scene
-    accuracy = scene.accuracy
     if scene.wear.remesh != "due":
         return False
     moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
-    if moved > FARTHEST * accuracy.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
+    if moved > FARTHEST * scene.accuracy.lengths.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
         return True
     return outgrown(state.stage, [p.vector for p in state.phases], **still_ahead(state))
 

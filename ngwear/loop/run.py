@@ -5,12 +5,12 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
+from ngwear.loop.result import Result
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.results.kept_sections import KeptSections
@@ -18,34 +18,6 @@ from ngwear.results.recorder import Folder, Recorder
 from ngwear.scene.scene import Scene
 
 log = logging.getLogger(__name__)
-
-
-@dataclass(frozen=True)
-class Result:
-    """How a run ended, and what it found.
-
-    Attributes
-    ----------
-    status : str
-        ``"completed"`` or ``"gave up"``.
-    message : str
-        Why it stopped.
-    summary : dict
-        As in ``summary.json``.
-    recorder : Recorder
-        Rows (as in ``series.csv``) and snapshots.
-    state : State or None
-        The last accepted state; None if the part could not be mounted.
-    error : Exception or None
-        What made it give up.
-    """
-
-    status: str
-    message: str
-    summary: dict[str, Any]
-    recorder: Recorder
-    state: State | None
-    error: Exception | None = None
 
 
 class Drawing(Protocol):
@@ -170,7 +142,7 @@ def run(
             draw.rest(folder.path)
     if error is not None and throw:
         raise error
-    return Result(status, message, summary, recorder, state, error)
+    return Result(status, message, summary, recorder, state, error, None if folder is None else folder.path)
 
 
 def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, cpu: float) -> None:

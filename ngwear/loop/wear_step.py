@@ -232,9 +232,10 @@ class Wearing:
         self._book_depths(share / width, err / width)
         phase.pressure, phase.mean, phase.area, phase.ways = pressure, mean, whole, ways
         if scene.deactivation is not None:
+            from ngwear.geometry.element_body import elements
             from ngwear.loop import lost_elements
 
-            points = receded(outline, share, scene.worn_edges, stage.body.now.inward())
+            points = receded(outline, share, scene.worn_edges, elements(stage.body).now.inward())
             state.ledger.worn += float(share.sum())
             state.ledger.removed += outline.area - polygon_area(points)
             state.ledger.moment += polygon_moment(outline.points) - polygon_moment(points)

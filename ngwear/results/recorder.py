@@ -14,9 +14,9 @@ from typing import IO, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import __version__
 from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
+from ngwear.files.version import VERSION
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import divided
@@ -240,7 +240,7 @@ class Recorder:
             "CPU time [s]": round(self.cpu, 3),
             "peak memory [MB]": round(peak_memory(), 1),
             "units": UNITS,
-            "ngwear": __version__,
+            "ngwear": VERSION,
         }
         if scene.deactivation is not None and scene.deactivation.damage is not None:
             torn = sum(out[f"area lost by {cause} [mm^2]"] for cause in ("tearing", "coming loose"))
@@ -304,9 +304,9 @@ class Folder(OutFolder):
         if recorder.rows:
             self.write_series(recorder.rows)
         self.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
-        fields = io.BytesIO()  # not the file itself: on a full disk HDF5 crashes where what it writes is compressed
-        _hdf5(fields, recorder, summary)
-        self.replace(FIELDS, lambda file: file.write(fields.getvalue()))
+        content = io.BytesIO()  # not the file itself: on a full disk HDF5 crashes where what it writes is compressed
+        _hdf5(content, recorder, summary)
+        self.replace(FIELDS, lambda file: file.write(content.getvalue()))
 
 
 def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
@@ -314,7 +314,7 @@ def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
 
     scene = recorder.scene
     with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"] = __version__
+        h5.attrs["ngwear"] = VERSION
         h5.attrs["scene"] = scene.name
         h5.attrs["units"] = json.dumps(UNITS)
         h5.attrs["summary"] = json.dumps(summary)

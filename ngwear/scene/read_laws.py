@@ -22,8 +22,8 @@ from ngwear.laws import (
 )
 from ngwear.scene.toml_values import get, known, record
 
-_LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
-_WEAR_LAWS = {
+FRICTION_LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
+WEAR_LAWS = {
     "power": PowerWear,
     "threshold": ThresholdWear,
     "saturating": SaturatingWear,
@@ -44,14 +44,14 @@ def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
     """
     if not isinstance(value, dict):
         return typed(place, value, "float")
-    kind, values = _chosen(place, value, _LAWS)
+    kind, values = _chosen(place, value, FRICTION_LAWS)
     if kind == "product":
         return _product(place, values, folder)
     if kind == "lubrication" and "fitted" in values:
         from ngwear.laws.fit import fit_lubrication  # SciPy's optimizers are slow to load
 
         return _of_file(place, values, "fitted", folder, lambda path: fit_lubrication(path).law)
-    return _table(place, values, folder, _LAWS[kind])
+    return _table(place, values, folder, FRICTION_LAWS[kind])
 
 
 def read_wear_rate(place: str, value: Any, folder: Path) -> WearRate | float:
@@ -77,8 +77,8 @@ def read_wear_law(place: str, value: Any, folder: Path) -> WearLaw:
     """
     if not isinstance(value, dict):
         raise SceneError(place, value, 'must be a table, such as { law = "power", exponent = 2.0 }')
-    kind, values = _chosen(place, value, _WEAR_LAWS)
-    return _table(place, values, folder, _WEAR_LAWS[kind])
+    kind, values = _chosen(place, value, WEAR_LAWS)
+    return _table(place, values, folder, WEAR_LAWS[kind])
 
 
 def _chosen(place: str, table: dict[str, Any], laws: dict[str, Any]) -> tuple[str, dict[str, Any]]:

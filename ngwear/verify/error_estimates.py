@@ -35,7 +35,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from ngwear.error_estimates.coarser_runs import COARSER, coarser, scaled, stated
-from ngwear.loop.run import Result
+from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.results.quantities_of_interest import reading
 from ngwear.results.richardson import relative_errors

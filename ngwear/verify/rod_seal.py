@@ -14,6 +14,7 @@ k times force and distance; the sum takes each solve's force at its end for all 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -21,10 +22,11 @@ import numpy as np
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import SceneError
 from ngwear.geometry.outline import Outline
-from ngwear.loop.run import Result
+from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.state import StrokeReport
 from ngwear.results.result_file import Snapshot
+from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Scene
 from ngwear.verify.base import Check, Stopwatch
@@ -33,11 +35,13 @@ CASE = "rod_seal"
 
 
 def shipped_scene(name: str = "scene.toml", folder: str = "rod_seal") -> Scene:
-    """Read a scene of this checkout's ``geometries``."""
+    """Read a scene of this checkout's ``geometries``, by the usual lengths if it asks for an error."""
     path = Path(__file__).parents[2] / "geometries" / folder / name
     if not path.is_file():
         raise SceneError("verify", str(path), "the shipped scenes come with the repository: run this in a checkout")
-    return read_scene(path)
+    scene = read_scene(path)
+    asks = isinstance(scene, Scene) and scene.accuracy.error is not None
+    return replace(scene, accuracy=Accuracy()) if asks else scene
 
 
 def run_and_watch(scene: Scene) -> tuple[Result, list[StrokeReport]]:

@@ -11,7 +11,7 @@ much. These are comparisons, not references: their tolerances are bands.
 
 from __future__ import annotations
 
-from ngwear.loop.run import Result
+from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.results.recorder import depths
 from ngwear.verify.base import Check, Stopwatch

@@ -27,7 +27,7 @@ from typing import Any
 import numpy as np
 
 from ngwear.errors import NgwearError
-from ngwear.loop.run import Result
+from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.sweep import Outcome, sweep
 from ngwear.results.quantities_of_interest import reading

@@ -16,7 +16,7 @@ from ngwear.plots.wear import plot
 from ngwear.results.result_file import read_result
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.read_scene import read_scene
-from ngwear.surfaces import Cylinder, Plane, WornProfile
+from ngwear.surfaces import Cylinder, WornProfile, rod
 from ngwear.wear.sliding_distance import Strokes
 
 K, COUNTER_K = 1e-3, 5e-4
@@ -38,7 +38,7 @@ PLATE = (
 def test_a_point_loses_what_it_passes_on_a_plane():
     under = np.array([[-0.4, 0.0], [0.0, 0.4]])
     wear = np.array([[0.0, 0.3], [0.3, 0.0]])  # a triangle of area 0.12
-    worn = WornProfile.of(Plane.rod(2.0), 0.03).swept(under, wear, np.array([[0.0, 5.0], [5.0, 3.0]]))
+    worn = WornProfile.of(rod(2.0), 0.03).swept(under, wear, np.array([[0.0, 5.0], [5.0, 3.0]]))
     assert worn.area == pytest.approx(0.12 * 7.0, rel=1e-13)
     assert worn.at(np.array([-0.5, 1.0, 2.5, 4.0, 5.5])) == pytest.approx([0.0, 0.12, 0.12, 0.24, 0.0], abs=1e-12)
     assert worn.at(np.array([0.0, 3.0, 5.0])) == pytest.approx([0.06, 0.18, 0.12], rel=1e-3)

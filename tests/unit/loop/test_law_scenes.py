@@ -259,7 +259,7 @@ def test_explain_says_which_law_and_what_the_scene_meets(tmp_path, write_sheet, 
     assert "by lubrication" in capsys.readouterr().out
 
 
-PIN = Path(__file__).parents[2] / "geometries" / "pin_on_plate" / "scene.toml"
+PIN = Path(__file__).parents[3] / "geometries" / "pin_on_plate" / "scene.toml"
 STRIBECK = 'friction = { law = "stribeck", boundary = 0.5, full = 0.05, speed = 50.0 }'
 
 

@@ -125,7 +125,7 @@ def test_meshes_are_fine_where_the_fluid_meets_a_contact_that_is_not_followed():
 
 
 def test_a_scene_file_asks_for_it():
-    text = (Path(__file__).parents[2] / "geometries" / "rod_seal" / "scene.toml").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[3] / "geometries" / "rod_seal" / "scene.toml").read_text(encoding="utf-8")
     data = tomllib.loads(text)["fluid"]
     assert not record(Fluid, "fluid", data).leak_pressure
     assert record(Fluid, "fluid", data | {"leak_pressure": True}).leak_pressure

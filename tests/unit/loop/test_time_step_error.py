@@ -10,12 +10,13 @@ import numpy as np
 import pytest
 from conftest import REMEMBERS, _write_sheet
 
-from ngwear import adaptive, time_step
+from ngwear.error_estimates import run_to_error as module
 from ngwear.error_estimates.coarser_runs import stated
 from ngwear.error_estimates.run_to_error import ACROSS, PARTS, next_level, next_parts, run_to_error
 from ngwear.error_estimates.settings import at, changes, knobs
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.explanation.explain import explain
+from ngwear.loop import time_step_error
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.time_step_error import ahead, in_halves, time_step_errors
@@ -71,8 +72,8 @@ def in_sixteenths(finished):
     for _ in range(4):
         finer = in_halves(finer)
     whole, exact = ahead(finished.state), ahead(finer)
-    deepest = time_step._deepest(whole)
-    return [time_step._read(seen, deepest) for seen in (whole, exact)]
+    deepest = time_step_error._deepest(whole)
+    return [time_step_error._read(seen, deepest) for seen in (whole, exact)]
 
 
 @pytest.fixture
@@ -268,9 +269,9 @@ def test_a_run_to_an_error_takes_the_parts_that_it_needs(tmp_path, creeping, mon
     def told(state):
         return {by_time(DEPTH): 0.03 / state.stage.scene.program.parts}
 
-    monkeypatch.setattr(time_step, "time_step_errors", told)
-    monkeypatch.setattr(adaptive, "first_across", lambda error: 3.0)
-    monkeypatch.setattr(adaptive, "next_across", lambda across, stated, error: None)
+    monkeypatch.setattr(time_step_error, "time_step_errors", told)
+    monkeypatch.setattr(module, "first_across", lambda error: 3.0)
+    monkeypatch.setattr(module, "next_across", lambda across, stated, error: None)
     asked = replace(creeping, accuracy=Accuracy(error=0.02))
     summary = run_to_error(asked, out=tmp_path).summary
     assert [level[PARTS] for level in summary["levels"]] == [1, 4]

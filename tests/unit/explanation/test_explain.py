@@ -17,7 +17,7 @@ from ngwear.explanation.neglected_effects_pin import left_out as left_out_of_pin
 from ngwear.explanation.text import lines
 from ngwear.scene.read_scene import read_scene
 
-GEOMETRIES = Path(__file__).parents[2] / "geometries"
+GEOMETRIES = Path(__file__).parents[3] / "geometries"
 ONSET = "speed from which the flash temperature exceeds 10 K [mm/s]"
 
 
