@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -16,6 +17,8 @@ from ngwear.loop.stepper import Stepper
 from ngwear.results.kept_sections import KeptSections
 from ngwear.results.recorder import Folder, Recorder
 from ngwear.scene.scene import Scene
+
+log = logging.getLogger(__name__)
 
 
 class Drawing(Protocol):
@@ -110,6 +113,8 @@ def run(
                 bar.update(state, recorder)
         except (ConvergenceError, GeometryError, MeshError) as failure:
             error = failure
+    if error is not None and state is not None:
+        _keep_last(stepper, state, recorder)
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
@@ -146,6 +151,14 @@ def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, 
     recorder.add(state, wall=recorder.wall)
     if folder is not None:
         save(folder, state, recorder)
+
+
+def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
+    """Keep the loaded section as it was when a run gave up: what there is to see tells why."""
+    try:
+        recorder.add_sections(stepper.sections(state))
+    except (ConvergenceError, GeometryError, MeshError) as error:
+        log.info("the last section is not kept: %s", error)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:

@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SECTION = "section.png"
-CLIPPED = 0.995  # share of the values within the colours: a sharp corner's stress has no bound
+CLIPPED = 0.99  # share of the values within the colours: a sharp corner's stress has no bound
 COLOUR_MAP = "viridis"
 FLUID, WET = "#cfe3f5", "#2a7fd0"
 FONT = 10.0  # points
 WIDTH = 10.67  # inches, of the figure
 TOP, BOTTOM, LEFT, RIGHT = 0.62, 0.52, 0.66, 0.15  # inches around the panels
 BAR, BESIDE, LABELS, TICKS = 0.16, 0.1, 0.85, 0.62  # colour bar, left of it, right of it; left of a panel of pressures
-NARROWEST, PANEL, GAP = 3.0, 1.0, 0.62  # panels of pressures: least width, least height, between two
+NARROWEST, PANEL, GAP = 3.0, 0.6, 0.62  # panels of pressures: least width, least height, between two
 FLAT = 0.42  # height over width of a view that is drawn above the pressures
 STRIP, DISC, BARE = 0.36, 0.75, 0.12  # inches of view beside the section: with a plane, with a disc, with nothing
 
@@ -104,7 +104,7 @@ class _Picture:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
-        names = pressed(list(states.values()))
+        names = pressed(list(states.values()), self.kept.surfaces)
         layout = self._layout(len(names))
         figure = Figure(figsize=layout.size)
         FigureCanvasAgg(figure)
@@ -123,10 +123,13 @@ class _Picture:
         for panel, name in zip(panels, names, strict=True):
             draw_pressure(panel, name, self.kept.surfaces.get(name), states)
         if panels:
-            panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, borderpad=0.1)
+            corner = 1 - RIGHT / layout.size[0], 1 - 0.06 / layout.size[1]
+            figure.legend(
+                *panels[0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=corner, ncols=2, frameon=False
+            )
             self._name_pressures(figure, layout)
         pressure = self.section.fluid_pressure
-        stroke = f"{self.shown.kind} stroke" if len({s.kind for s in self.kept.snapshots}) > 1 else ""
+        stroke = self.shown.kind if len({s.kind for s in self.kept.snapshots}) > 1 else ""
         told = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
         title = f"{self.kept.scene}: {', '.join(filter(None, told))}"
         figure.text(left / layout.size[0], 1 - 0.12 / layout.size[1], title, va="top", fontsize=FONT + 2)
@@ -138,9 +141,10 @@ class _Picture:
         top = max(box[1] + box[3] for box in layout.pressures)
         wide, high = layout.size
         text = "contact pressure [MPa]"
-        figure.text((first - TICKS + 0.05) / wide, 0.5 * (low + top) / high, text, rotation=90, va="center", ha="left")
+        figure.text((first - 0.54) / wide, 0.5 * (low + top) / high, text, rotation=90, va="center", ha="left")
 
     def _draw_section(self, axes: Axes, layout: _Layout, field: str, states: dict[str, Section], *, mesh: bool) -> Any:
+        from matplotlib.ticker import MaxNLocator
         from shapely import union_all
 
         section, window = self.section, layout.window
@@ -150,6 +154,8 @@ class _Picture:
         axes.grid(visible=False)
         axes.set_xlabel("x [mm]")
         axes.set_ylabel("y [mm]")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(MaxNLocator(nbins="auto", steps=[1, 2, 5, 10]))
         bodies = self._bodies(window)
         draw_bodies(axes, bodies, window)
         filled = self._fill(axes, field)
@@ -224,21 +230,20 @@ class _Picture:
         if flat and panels:
             under = 1.45
             total = TOP + height + BOTTOM + 0.32 + under + BOTTOM
-            step = (WIDTH - LEFT - RIGHT + GAP) / panels
+            step = (width + GAP) / panels
             boxes = [(LEFT + k * step, BOTTOM, step - GAP, under) for k in range(panels)]
             return _Layout((WIDTH, total), (LEFT, total - TOP - height, width, height), boxes, window, inch)
         column = max(height, panels * (PANEL + GAP) - GAP)
         total = TOP + column + BOTTOM
         start = LEFT + width + BESIDE + BAR + LABELS + TICKS
         each = (column + GAP) / max(panels, 1)
-        boxes = [
-            (start, BOTTOM + column - (k + 1) * each + GAP, WIDTH - RIGHT - start, each - GAP) for k in range(panels)
-        ]
+        lows = [BOTTOM + column - (k + 1) * each + GAP for k in range(panels)]
+        boxes = [(start, low, WIDTH - RIGHT - start, each - GAP) for low in lows]
         middle = BOTTOM + 0.5 * (column - height)
         return _Layout((WIDTH, total), (LEFT, middle, width, height), boxes, window, inch)
 
     def _around(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """How far bodies beside the section are [mm], and how much of them to show [inches]; (2, 2): low, high; x, y."""
+        """How far bodies beside the section are [mm], and how much of them to show [inches]: low and high, x and y."""
         from shapely import box
 
         gaps, rooms = np.zeros((2, 2)), np.full((2, 2), BARE)
@@ -267,7 +272,7 @@ def _border(section: Section) -> Any:
 def _line(axes: Axes, path: Any, colour: str, width: float, *, zorder: float, **style: Any) -> None:
     from matplotlib.patches import PathPatch
 
-    axes.add_patch(PathPatch(path, fill=False, edgecolor=colour, lw=width, zorder=zorder, **style))
+    axes.add_artist(PathPatch(path, fill=False, edgecolor=colour, lw=width, zorder=zorder, **style))
 
 
 def _region(section: Section) -> Any:

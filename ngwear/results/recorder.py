@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -179,6 +179,13 @@ class Recorder:
         stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
         return Snapshot(stroke, kind, report.contour.points, profiles, report.section, elements, time)
 
+    def add_sections(self, sections: Sequence[dict[str, NDArray[np.generic]]]) -> None:
+        """Add the loaded sections of the cycle's strokes to the last rows of these, where there are none yet."""
+        for stroke, section in zip(self.scene.program.cycle, sections, strict=True):
+            last = max((k for k, s in enumerate(self.snapshots) if s.kind == stroke.name), default=None)
+            if last is not None and not self.snapshots[last].section:
+                self.snapshots[last] = replace(self.snapshots[last], section=section)
+
     @property
     def sections(self) -> KeptSections:
         """The loaded sections so far."""
@@ -307,12 +314,12 @@ def _fill(h5: Any, recorder: Recorder, summary: dict[str, Any]) -> None:
     if damage is not None:
         h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
     contacts = h5.create_group("contacts")
-    for spec in scene.contacts:
+    for number, spec in enumerate(scene.contacts):
         group = subgroup(contacts, spec.name)
         rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
         mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
         group.attrs["edges"], group.attrs[WEAR_RATE] = spec.edges, without_subnormals(mean)
-        group.attrs["surface"] = surface_text(spec.surface)
+        group.attrs["surface"], group.attrs["number"] = surface_text(spec.surface), number
         if spec.wear_law is not None:
             group.attrs["wear law"] = spec.wear_law.words
     put_series(h5, recorder.rows)
