@@ -123,7 +123,7 @@ def run(
         done = None if state is None else scene.program.counted(state.strokes)
         message = f"{'the part cannot be mounted' if done is None else f'after stroke {done}'}: {error}"
     times = {"wall time [s]": round(recorder.wall, 3), "CPU time [s]": round(recorder.cpu, 3)}
-    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
+    summary: dict[str, Any] = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
         summary["error estimates"] |= by_time_step
@@ -203,7 +203,8 @@ class _Bar:
         from tqdm import tqdm
 
         self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
-        self._scene, self._bar = scene, None
+        self._scene = scene
+        self._bar: Any = None
 
     def __enter__(self) -> _Bar:
         return self

@@ -118,8 +118,7 @@ def sweep(
     own = executor is None
     if own:
         _check_importable(function)
-    if own or folder is not None:
-        keys = [_digest(function, point) for point in points]
+    keys = [_digest(function, point) for point in points] if own or folder is not None else []
     store = None if folder is None else _Store(Path(folder), classes, resume=resume)
     outcomes: list[Outcome | None] = [None] * len(points)
     if store is not None and resume:
@@ -134,12 +133,12 @@ def sweep(
             outcomes[i] = Outcome(points[i], failure=result) if failed else Outcome(points[i], result)
             step()
 
-        if own:
+        if executor is None:
             _in_processes(function, points, waiting, workers or os.cpu_count() or 1, keep)
         else:
             for i, error in _feed(executor, function, points, deque(waiting), len(points), keep):
                 keep(i, Failure.of(error))
-    return outcomes
+    return [outcome for outcome in outcomes if outcome is not None]
 
 
 def _attempt(function: Callable[[Any], Any], point: Any) -> Any:
@@ -167,8 +166,8 @@ def _feed(
             i = waiting.popleft()
             try:
                 running[executor.submit(_attempt, function, points[i])] = i
-            except BrokenExecutor as error:
-                lost.append((i, error))
+            except BrokenExecutor as broken:
+                lost.append((i, broken))
         done, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
             i, error = running.pop(future), future.exception()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +46,9 @@ def coordinate(name: str, surface: RigidSurface | None, contact: SectionContact)
 def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: Labelled) -> None:
     """Draw the pressure along one contact in some states, by their labels, where it is in contact."""
     low, high, top = [], [], 0.0
-    lines = [{"lw": 2.2, "alpha": 0.55}] * (len(states) - 1) + [{"lw": 1.2}]  # what has not changed shows both
+    lines: list[dict[str, Any]] = [{"lw": 2.2, "alpha": 0.55}] * (len(states) - 1) + [
+        {"lw": 1.2}
+    ]  # what has not changed shows both
     for (label, section), colour, style in zip(states.items(), COLOURS, lines, strict=False):
         contact = section.contacts[name]
         along, title = coordinate(name, surface, contact)

@@ -90,14 +90,14 @@ class Recorder:
             self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
         for report in state.reports:
-            self.rows.append(self._row(state, report, wall))
+            self.rows.append(self._row(state, report, wall, self.unworn))
             self.snapshots.append(self._snapshot(report))
 
-    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+    def _row(self, state: Any, report: Any, wall: float, unworn: Outline) -> dict[str, Any]:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
-        depth = depths(self.unworn, report.contour)
+        depth = depths(unworn, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
             "stroke [-]": scene.program.counted(report.last_stroke),
@@ -111,7 +111,7 @@ class Recorder:
             "error estimate of maximum depth [mm]": abs(ledger.depth_error),
         }
         for name in dict.fromkeys(scene.worn_edges):
-            row[f"depth at {name} [mm]"] = float(depth[self.unworn.on((name,))].max())
+            row[f"depth at {name} [mm]"] = float(depth[unworn.on((name,))].max())
         if report.cells is not None:
             row |= self._book(report)
         for contact, profile in report.contacts.items():

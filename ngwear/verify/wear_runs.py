@@ -108,7 +108,7 @@ def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
     state = stepper.start()
     while not stepper.finished(state):
         (phase,) = state.phases
-        before = phase.ways[0] if phase.error <= CALM else 0.0
+        before = phase.worn.ways[0] if phase.worn is not None and phase.error <= CALM else 0.0
         state = stepper.advance(state)
         report = state.reports[0]
         profile = report.contacts[spec.name]
