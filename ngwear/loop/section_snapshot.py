@@ -18,7 +18,7 @@ Arrays = dict[str, NDArray[np.generic]]
 def section_snapshot(stage: Stage) -> Arrays:
     """The section as it stands in the present state; see ``ngwear.results.section.Section`` for names and shapes.
 
-    In single precision, stresses at the vertices only: about 100 bytes an element, half of that in the file.
+    In single precision, stresses at the vertices only: about 75 bytes an element, 45 in the file.
     """
     problem, body = stage.problem, stage.body
     u, nodes = problem.fields[DISPLACEMENT], ElementNodes(body.mesh)

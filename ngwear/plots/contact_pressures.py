@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,10 +46,8 @@ def coordinate(name: str, surface: RigidSurface | None, contact: SectionContact)
 def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: Labelled) -> None:
     """Draw the pressure along one contact in some states, by their labels, where it is in contact."""
     low, high, top = [], [], 0.0
-    lines: list[dict[str, Any]] = [{"lw": 2.2, "alpha": 0.55}] * (len(states) - 1) + [
-        {"lw": 1.2}
-    ]  # what has not changed shows both
-    for (label, section), colour, style in zip(states.items(), COLOURS, lines, strict=False):
+    lines = [(2.2, 0.55)] * (len(states) - 1) + [(1.2, 1.0)]  # what has not changed shows both
+    for (label, section), colour, (width, alpha) in zip(states.items(), COLOURS, lines, strict=False):
         contact = section.contacts[name]
         along, title = coordinate(name, surface, contact)
         on = contact.pressure > 0
@@ -57,7 +55,8 @@ def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: L
             low.append(along[on].min())
             high.append(along[on].max())
         top = max(top, float(contact.pressure.max(initial=0.0)))
-        axes.plot(*_line(along, contact), color=colour, label=label, solid_joinstyle="round", **style)
+        x, p = _line(along, contact)
+        axes.plot(x, p, color=colour, label=label, lw=width, alpha=alpha, solid_joinstyle="round")
     room = ROOM * max(max(high) - min(low), 1e-6)
     axes.set_xlim(min(low) - room, max(high) + room)
     axes.set_ylim(0, 1.1 * top)

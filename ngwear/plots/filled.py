@@ -88,15 +88,11 @@ def curves(points: Array, edges: Index) -> Path:
 
 def outline(section: Section, *, pieces: int = 4) -> list[Array]:
     """The border of the section as closed polygons, each edge in so many pieces."""
-    s = np.arange(pieces)[:, None] / pieces
+    s = np.arange(pieces) / pieces
     polygons = []
     for loop in section.loops():
         start, middle = section.points[loop[:, 0]], section.points[loop[:, 1]]
         end = np.roll(start, -1, axis=0)
-        parts = [f[None] * p[:, None] for f, p in zip(_parabola(s), (start, middle, end), strict=True)]
-        polygons.append(sum(parts, np.zeros(())).reshape(-1, 2))
+        shapes = np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=1)
+        polygons.append((shapes @ np.stack([start, middle, end], axis=1)).reshape(-1, 2))
     return polygons
-
-
-def _parabola(s: Array) -> tuple[Array, Array, Array]:
-    return (1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)
