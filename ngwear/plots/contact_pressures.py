@@ -46,9 +46,8 @@ def coordinate(name: str, surface: RigidSurface | None, contact: SectionContact)
 def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: Labelled) -> None:
     """Draw the pressure along one contact in some states, by their labels, where it is in contact."""
     low, high, top = [], [], 0.0
-    lines: list[dict[str, Any]] = [{"lw": 2.2, "alpha": 0.55}] * (len(states) - 1) + [
-        {"lw": 1.2}
-    ]  # what has not changed shows both
+    wide: dict[str, Any] = {"lw": 2.2, "alpha": 0.55}
+    lines = [wide] * (len(states) - 1) + [{"lw": 1.2}]  # what has not changed shows both
     for (label, section), colour, style in zip(states.items(), COLOURS, lines, strict=False):
         contact = section.contacts[name]
         along, title = coordinate(name, surface, contact)
