@@ -135,7 +135,7 @@ def read_result(folder: Path | str) -> ResultFile:
 
 def _snapshot(group: Any) -> Snapshot:
     """One stroke of the file."""
-    found: dict[str, dict[str, dict[str, Array]]] = {CONTACT: {}, PART: {}}
+    found: dict[str, dict[str, dict[str, NDArray[Any]]]] = {CONTACT: {}, PART: {}}
     for item in group.values():
         if "holds" in item.attrs:
             content = {name_of(values): values[()] for values in item.values()}
