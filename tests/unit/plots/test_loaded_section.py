@@ -9,7 +9,7 @@ from ngwear.cli import BAD_INPUT, OK, main
 from ngwear.errors import ResultError
 from ngwear.loop.run import run
 from ngwear.plots.contact_pressures import coordinate, pressed
-from ngwear.plots.filled import _divided
+from ngwear.plots.filled import _divided, outline
 from ngwear.plots.loaded_section import draw_section
 from ngwear.plots.rigid_bodies import body
 from ngwear.plots.wear import plot_section
