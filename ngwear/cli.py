@@ -112,12 +112,14 @@ def _run(options: argparse.Namespace) -> int:
     from ngwear.parallel.workers import Worker
 
     worker = None if options.alone else Worker(*BESIDE)  # loads while this process does
-    from ngwear.error_estimates.run import run
     from ngwear.files.result_folder import COMPLETED
     from ngwear.scene.read_scene import read_scene
 
+    scene = read_scene(options.scene)  # a bad scene is told before the solver is loaded
+    from ngwear.error_estimates.run import run
+
     result = run(
-        read_scene(options.scene),
+        scene,
         out=options.out,
         accuracy=options.accuracy,
         alone=options.alone,
@@ -171,10 +173,11 @@ def _explain(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from ngwear.explanation.assumptions import Assumed
-    from ngwear.explanation.explain import explain
     from ngwear.scene.read_scene import read_scene
 
     scene, assumed = read_scene(options.scene), Assumed().replaced(options.assume)
+    from ngwear.explanation.explain import explain
+
     shown = sys.stderr.isatty()
     with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
         found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))

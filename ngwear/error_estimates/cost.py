@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
-import json
 import math
 import tempfile
 import time
@@ -174,7 +171,8 @@ def _worth_another(found: Measurement, left: float) -> bool:
 def _measured(point: Point, left: float, folder: Path) -> tuple[Measurement, bool]:
     start = time.perf_counter()
     with one_thread_pool(1) as workers:
-        (outcome,) = sweep(measure, [point], executor=Limited(workers, left), folder=folder, resume=True)
+        limited = Limited(workers, left)
+        (outcome,) = sweep(measure, [point], executor=limited, folder=folder, resume=True, classes=(Measurement,))
     if outcome.failure is None:
         return outcome.result, outcome.restored
     message = f"{outcome.failure.kind}: {outcome.failure.message}"
@@ -182,13 +180,8 @@ def _measured(point: Point, left: float, folder: Path) -> tuple[Measurement, boo
 
 
 def _write(out: OutFolder, found: Cost, *, figures: bool) -> None:
-    text = io.StringIO()
-    rows = found.table()
-    writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    out.replace(CSV, lambda file: file.write(text.getvalue().encode()))
-    out.replace(JSON, lambda file: file.write((json.dumps(found.as_dict(), indent=2) + "\n").encode()))
+    out.write_table(CSV, found.table())
+    out.write_json(JSON, found.as_dict())
     if figures and found.study.front():
         from ngwear.error_estimates.cost_figure import draw_cost
 

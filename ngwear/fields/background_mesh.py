@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
@@ -38,10 +40,6 @@ class Background:
 
     def __init__(self, body: Body) -> None:
         self.body = body
-        self._set_up()
-
-    def _set_up(self) -> None:
-        body = self.body
         rule = ng.IntegrationRule(ng.TRIG, RULE)
         points = body.mesh.MapToAllElements(rule, ng.VOL)
         self.shape = (body.mesh.ne, len(rule.points))
@@ -50,12 +48,14 @@ class Background:
         self.areas = np.array(rule.weights) * np.abs(np.linalg.det(jacobian))
         self._fit = np.linalg.pinv(_quadratic(*np.array(rule.points)[:, :2].T))
 
-    def __getstate__(self) -> dict[str, Body]:
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same background of, to the last bit."""
         return {"body": self.body}
 
-    def __setstate__(self, saved: dict[str, Body]) -> None:
-        self.body = saved["body"]
-        self._set_up()
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> Background:
+        """The background again."""
+        return cls(data["body"])
 
     def fitted(self, values: Array) -> Array:
         """Coefficients of the quadratic in each element, by least squares; shape (elements, 6, k)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import netgen.meshing as ngm
 import ngsolve as ng
@@ -50,13 +51,18 @@ class ElementBody(MeshedSection):
         self.outline = self._outline()
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=1))
 
-    def __getstate__(self) -> dict[str, object]:
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same body of, to the last bit."""
         return {"cells": self.cells, "base": self.base, "contour": self.contour}
 
-    def __setstate__(self, saved: dict[str, object]) -> None:
-        self.__dict__.update(saved)
-        self._set_up()
-        self._deform()
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> ElementBody:
+        """The body again."""
+        body = cls.__new__(cls)
+        body.cells, body.base, body.contour = (data[name] for name in ("cells", "base", "contour"))
+        body._set_up()
+        body._deform()
+        return body
 
     @property
     def now(self) -> Cells:

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
+from ngwear.loop.checkpoint import load, save
 from ngwear.loop.result import Result
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
@@ -90,7 +91,7 @@ def run(
     """
     on_step, draw = on_step or (lambda state: None), draw or DrawnHere()
     folder = None if out is None else Folder(Path(out), scene, resume=resume)
-    saved = folder.load() if folder is not None and resume else None
+    saved = load(folder, scene) if folder is not None and resume else None
     wall, cpu = time.perf_counter(), time.process_time()
     state, recorder = saved if saved is not None else (None, Recorder(scene))
     wall, cpu = wall - recorder.wall, cpu - recorder.cpu
@@ -122,7 +123,7 @@ def run(
         done = None if state is None else scene.program.counted(state.strokes)
         message = f"{'the part cannot be mounted' if done is None else f'after stroke {done}'}: {error}"
     times = {"wall time [s]": round(recorder.wall, 3), "CPU time [s]": round(recorder.cpu, 3)}
-    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
+    summary: dict[str, Any] = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
         summary["error estimates"] |= by_time_step
@@ -149,7 +150,7 @@ def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, 
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     recorder.add(state, wall=recorder.wall)
     if folder is not None:
-        folder.save(state, recorder)
+        save(folder, state, recorder)
 
 
 def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
@@ -202,7 +203,8 @@ class _Bar:
         from tqdm import tqdm
 
         self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
-        self._scene, self._bar = scene, None
+        self._scene = scene
+        self._bar: Any = None
 
     def __enter__(self) -> _Bar:
         return self

@@ -1,28 +1,27 @@
-"""What a run leaves on disk: series.csv, result.h5, summary.json and a checkpoint to go on from."""
+"""What a run leaves on disk: series.csv, result.h5, summary.json."""
 
 from __future__ import annotations
 
 import hashlib
-import io
 import json
-import pickle
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.errors import ResultError
-from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
+from ngwear.files.hdf5 import mark, put, put_series, subgroup, write
+from ngwear.files.peak_memory import peak_memory
+from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder
+from ngwear.files.subnormal import without_subnormals
 from ngwear.files.version import VERSION
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import divided
 from ngwear.results.kept_sections import KeptSections
-from ngwear.results.result_file import Snapshot
-from ngwear.results.section import put_section
+from ngwear.results.result_file import CONTACT, PART, WEAR_RATE, Snapshot
 from ngwear.results.surface_text import surface_text
 from ngwear.scene.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
@@ -75,6 +74,15 @@ class Recorder:
     unworn: Outline | None = None
     unworn_area: float = 0.0
 
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same records of: all but the scene."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "scene"}
+
+    @classmethod
+    def from_data(cls, data: dict[str, Any], scene: Scene) -> Recorder:
+        """The records again, of a run of the same scene."""
+        return cls(scene, **data)
+
     def add(self, state: Any, *, wall: float) -> None:
         """Add the strokes of the state's last step."""
         if self.unworn is None:
@@ -82,14 +90,14 @@ class Recorder:
             self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
         for report in state.reports:
-            self.rows.append(self._row(state, report, wall))
+            self.rows.append(self._row(state, report, wall, self.unworn))
             self.snapshots.append(self._snapshot(report))
 
-    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+    def _row(self, state: Any, report: Any, wall: float, unworn: Outline) -> dict[str, Any]:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
-        depth = depths(self.unworn, report.contour)
+        depth = depths(unworn, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
             "stroke [-]": scene.program.counted(report.last_stroke),
@@ -103,7 +111,7 @@ class Recorder:
             "error estimate of maximum depth [mm]": abs(ledger.depth_error),
         }
         for name in dict.fromkeys(scene.worn_edges):
-            row[f"depth at {name} [mm]"] = float(depth[self.unworn.on((name,))].max())
+            row[f"depth at {name} [mm]"] = float(depth[unworn.on((name,))].max())
         if report.cells is not None:
             row |= self._book(report)
         for contact, profile in report.contacts.items():
@@ -272,82 +280,66 @@ class Recorder:
 
 
 class Folder(OutFolder):
-    """The folder of a wear run, with the checkpoint that it goes on from."""
+    """The folder of a wear run."""
 
     def __init__(self, path: Path, scene: Scene, *, resume: bool) -> None:
         self.scene_hash = fingerprint(scene)
         super().__init__(path, CHECKPOINT, resume=resume)
-
-    def load(self) -> tuple[Any, Recorder] | None:
-        """Return the state and the records of the run to go on with, or None if it has not begun."""
-        file = self.path / CHECKPOINT
-        if not file.exists():
-            return None
-        try:
-            saved = pickle.loads(file.read_bytes())
-            scene_hash, state, recorder = saved["scene"], saved["state"], saved["recorder"]
-        except Exception as error:
-            raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
-        if scene_hash != self.scene_hash:
-            raise ResultError(f"{self.path} holds a run of another scene (or of a changed one): give another folder")
-        return state, recorder
-
-    def save(self, state: Any, recorder: Recorder) -> None:
-        """Write checkpoint and series."""
-        content = pickle.dumps({"scene": self.scene_hash, "state": state, "recorder": recorder})
-        self.replace(CHECKPOINT, lambda file: file.write(content))
-        self.write_series(recorder.rows)
 
     def finish(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Write the summary, the series and the fields."""
         self.clear()
         if recorder.rows:
             self.write_series(recorder.rows)
-        self.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
-        content = io.BytesIO()  # not the file itself: on a full disk HDF5 crashes where what it writes is compressed
-        _hdf5(content, recorder, summary)
-        self.replace(FIELDS, lambda file: file.write(content.getvalue()))
+        self.write_json(SUMMARY, summary)
+        self.replace(FIELDS, lambda file: write(file, lambda h5: _fill(h5, recorder, summary)))
 
 
-def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
+def _fill(h5: Any, recorder: Recorder, summary: dict[str, Any]) -> None:
     import h5py
 
     scene = recorder.scene
-    with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"] = VERSION
-        h5.attrs["scene"] = scene.name
-        h5.attrs["units"] = json.dumps(UNITS)
-        h5.attrs["summary"] = json.dumps(summary)
-        outline = h5.create_group("outline")
-        outline["points [mm]"] = scene.part.outline.points
-        outline["edges"] = np.array(scene.part.outline.names, dtype=h5py.string_dtype())
-        outline.attrs["provenance"] = scene.part.outline.provenance
-        h5.attrs["memory"] = scene.arms is not None
-        h5.attrs["laws over distance"] = any(
-            c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
-        )
-        damage = None if scene.deactivation is None else scene.deactivation.damage
-        if damage is not None:
-            h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
-        contacts = h5.create_group("contacts")
-        for number, spec in enumerate(scene.contacts):
-            group = contacts.create_group(spec.name)
-            rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
-            mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
-            group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
-            group.attrs["surface"], group.attrs["number"] = surface_text(spec.surface), number
-            if spec.wear_law is not None:
-                group.attrs["wear law"] = spec.wear_law.words
-        put_series(h5, recorder.rows)
-        strokes = h5.create_group("strokes")
-        for number, snapshot in enumerate(recorder.snapshots):
-            group = strokes.create_group(f"{number:05d}")
-            group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
-            group.attrs["time [s]"] = snapshot.time
-            group["outline [mm]"] = snapshot.outline
-            for contact, profile in snapshot.profiles.items():
-                for name, values in profile.items():
-                    group[f"{contact}/{name}"] = values
-            for name, values in snapshot.elements.items():
-                group[f"elements/{name}"] = values
-            put_section(group, snapshot.section)
+    mark(h5, scene.name)
+    h5.attrs["units"] = json.dumps(UNITS)
+    h5.attrs["summary"] = json.dumps(without_subnormals(summary))
+    outline = h5.create_group("outline")
+    put(outline, "points [mm]", scene.part.outline.points)
+    outline["edges"] = np.array(scene.part.outline.names, dtype=h5py.string_dtype())
+    outline.attrs["provenance"] = scene.part.outline.provenance
+    h5.attrs["memory"] = scene.arms is not None
+    h5.attrs["laws over distance"] = any(
+        c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
+    )
+    damage = None if scene.deactivation is None else scene.deactivation.damage
+    if damage is not None:
+        h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
+    contacts = h5.create_group("contacts")
+    for number, spec in enumerate(scene.contacts):
+        group = subgroup(contacts, spec.name)
+        rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
+        mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
+        group.attrs["edges"], group.attrs[WEAR_RATE] = spec.edges, without_subnormals(mean)
+        group.attrs["surface"], group.attrs["number"] = surface_text(spec.surface), number
+        if spec.wear_law is not None:
+            group.attrs["wear law"] = spec.wear_law.words
+    put_series(h5, recorder.rows)
+    strokes = h5.create_group("strokes")
+    for number, snapshot in enumerate(recorder.snapshots):
+        _stroke(strokes.create_group(f"{number:05d}"), snapshot)
+
+
+def _stroke(group: Any, snapshot: Snapshot) -> None:
+    group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
+    group.attrs["time [s]"] = snapshot.time
+    put(group, "outline [mm]", snapshot.outline)
+    for name, profile in snapshot.profiles.items():
+        _put_all(subgroup(group, name), CONTACT, profile)
+    for name, content in (("section", snapshot.section), ("elements", snapshot.elements)):
+        if content:
+            _put_all(subgroup(group, name), PART, content, compressed=name == "section")
+
+
+def _put_all(group: Any, kind: str, content: Mapping[str, NDArray[Any]], *, compressed: bool = False) -> None:
+    group.attrs["holds"] = kind
+    for name, values in content.items():
+        put(group, name, values, compressed=compressed)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +16,6 @@ Arrays = Mapping[str, NDArray[np.generic]]
 
 STRESS, STRETCH = "stress xx, yy, xy, zz [MPa]", "maximum principal stretch [-]"
 VON_MISES = "von Mises stress [MPa]"
-COMPRESSED_FROM = 1000  # numbers; below, compression saves nothing
 
 
 @dataclass(frozen=True)
@@ -202,11 +200,3 @@ def named(field: str) -> str:
             return name
     known = ", ".join(f"'{name.rsplit(' [', 1)[0]}'" for name in FIELDS)
     raise ResultError(f"no field is called '{field}': choose one of {known}")
-
-
-def put_section(group: Any, arrays: Arrays) -> None:
-    """Write the arrays of a section into a stroke's group of an open result file, the long ones compressed."""
-    for name, values in arrays.items():
-        short = values.size < COMPRESSED_FROM
-        how = {} if short else {"compression": "gzip", "compression_opts": 4, "shuffle": True}
-        group.create_dataset(f"section/{name}", data=values, **how)

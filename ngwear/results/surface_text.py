@@ -6,6 +6,7 @@ import json
 from dataclasses import fields
 from typing import Any
 
+from ngwear.files.hdf5 import name_of
 from ngwear.surfaces import Cylinder, Plane, RigidSurface
 
 KNOWN: dict[str, type[RigidSurface]] = {"plane": Plane, "cylinder": Cylinder}
@@ -30,7 +31,6 @@ def surface_of(text: str) -> RigidSurface | None:
 
 def surfaces_of(h5: Any) -> dict[str, RigidSurface]:
     """The surface of each contact in an open result file, in the scene's order, of those that it can say."""
-    contacts = h5.get("contacts", {})
-    names = sorted(contacts, key=lambda name: contacts[name].attrs.get("number", 0))
-    found = {name: surface_of(contacts[name].attrs.get("surface", '{"type": ""}')) for name in names}
+    groups = sorted(h5.get("contacts", {}).values(), key=lambda group: group.attrs.get("number", 0))
+    found = {name_of(group): surface_of(group.attrs.get("surface", '{"type": ""}')) for group in groups}
     return {name: surface for name, surface in found.items() if surface is not None}

@@ -9,18 +9,22 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.effects.contact_patch import Faces
+from ngwear.equilibrium.stepping import Work
 from ngwear.errors import ConvergenceError, ResultError
-from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SERIES, SUMMARY, OutFolder, put_series
-from ngwear.files.version import VERSION
+from ngwear.files.hdf5 import mark, put, put_series, stored_name, write
+from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SERIES, SUMMARY, OutFolder
+from ngwear.files.subnormal import without_subnormals
 from ngwear.parallel.sweep import Outcome, sweep
 from ngwear.results.closing_table import closing_table
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.pin_scene import KIND, PinScene
+from ngwear.sliding.patch import Patch
 from ngwear.sliding.pin import COARSER, PinSlide, slide_pin
 from ngwear.units import UNITS
 
@@ -136,15 +140,22 @@ def run_pin(
     wall = time.perf_counter()
     folder = OutFolder(Path(out), POINTS, resume=resume)
     slide = functools.partial(slide_pin, scene.pin, mesh=scene.mesh, vtk=folder.path if scene.vtk else None)
-    points = folder.path / POINTS
-    outcomes = sweep(slide, scene.speeds, folder=points, resume=resume, workers=workers, progress=progress)
+    outcomes = sweep(
+        slide,
+        scene.speeds,
+        folder=folder.path / POINTS,
+        resume=resume,
+        workers=workers,
+        progress=progress,
+        classes=(PinSlide, Patch, Faces, Work),
+    )
     pairs = [o.result for o in outcomes if o.ok]
     summary = _summary(scene, outcomes, pairs, time.perf_counter() - wall)
     folder.clear()
     rows = [row(*pair) for pair in pairs]
     folder.write_series(rows)
-    folder.replace(FIELDS, lambda file: _hdf5(file, scene, pairs, summary))
-    folder.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
+    folder.replace(FIELDS, lambda file: write(file, lambda h5: _fill(h5, scene, pairs, summary)))
+    folder.write_json(SUMMARY, summary)
     if figures and pairs:
         from ngwear.plots.pin import plot_pin
 
@@ -230,18 +241,17 @@ def _summary(scene: PinScene, outcomes: list[Outcome], pairs: list[Pair], wall: 
     return summary | {"wall time [s]": round(wall, 3), "CPU time [s]": round(cpu, 3)}
 
 
-def _hdf5(file: IO[bytes], scene: PinScene, pairs: list[Pair], summary: dict[str, Any]) -> None:
-    import h5py
-
-    with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = VERSION, scene.name, KIND
-        h5.attrs["thickness [mm]"] = scene.pin.thickness
-        h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(summary)
-        put_series(h5, [row(*pair) for pair in pairs])
-        for number, (_, slide) in enumerate(pairs):
-            group = h5.create_group(f"speeds/{number:03d}")
-            group.attrs["speed [mm/s]"] = slide.speed
-            group["edge of the contact [mm]"] = slide.patch.edge
-            group["faces/corners, deformed [mm]"] = slide.faces.corners
-            group["faces/centres, undeformed [mm]"] = slide.faces.reference
-            group["faces/pressure [MPa]"] = slide.faces.pressure
+def _fill(h5: Any, scene: PinScene, pairs: list[Pair], summary: dict[str, Any]) -> None:
+    mark(h5, scene.name)
+    h5.attrs["kind"] = KIND
+    h5.attrs["thickness [mm]"] = scene.pin.thickness
+    h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(without_subnormals(summary))
+    put_series(h5, [row(*pair) for pair in pairs])
+    for number, (_, slide) in enumerate(pairs):
+        group = h5.create_group(f"speeds/{number:03d}")
+        group.attrs[stored_name("speed [mm/s]")] = slide.speed
+        put(group, "edge of the contact [mm]", slide.patch.edge)
+        faces = group.create_group("faces")
+        put(faces, "corners, deformed [mm]", slide.faces.corners)
+        put(faces, "centres, undeformed [mm]", slide.faces.reference)
+        put(faces, "pressure [MPa]", slide.faces.pressure)

@@ -199,7 +199,7 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
     errors = result.summary["error estimates"]
     ratio = coarser_by(element_edge(result.recorder.rows), json.loads((folder / FILE).read_text())["element edge [mm]"])
     two = relative_errors(mine, other, ratio=ratio)[DEPTH] + errors["maximum depth by the wear steps alone [-]"]
-    summary = run_stated(scene("implicit"), out=tmp_path, enough=over * two, figures=False).summary
+    summary = run_stated(scene("implicit"), out=tmp_path, enough={DEPTH: over * two}, figures=False).summary
     assert ("solves of the coarsest companion" in summary) is needed
     assert summary["error estimates"][DEPTH] == pytest.approx(errors[DEPTH] if needed else two)
     assert not any("companion" in warning for warning in summary["warnings"])

@@ -1,7 +1,6 @@
 """Scenes whose counter-surface keeps a worn profile."""
 
 import math
-import pickle
 
 import numpy as np
 import pytest
@@ -67,7 +66,7 @@ def test_ways_of_strokes_that_come_back_and_of_those_that_go_on():
 
 
 @pytest.mark.parametrize("changes", [(), TO_AND_FRO], ids=["turning", "to and fro"])
-def test_surface_loses_what_the_law_wears_off_it(tmp_path, write_sheet, changes):
+def test_surface_loses_what_the_law_wears_off_it(tmp_path, write_sheet, from_checkpoint, changes):
     scene = read_scene(write_sheet(tmp_path, WEARS, *changes))
     stepper = Stepper(scene)
     state, wanted = stepper.start(), 0.0
@@ -77,7 +76,7 @@ def test_surface_loses_what_the_law_wears_off_it(tmp_path, write_sheet, changes)
         wanted += COUNTER_K * 10.0 * sum(loads)
     assert state.counters["roller"].area == pytest.approx(wanted, rel=1e-10)
     assert state.counters["roller"].area == pytest.approx(COUNTER_K / K * state.ledger.worn, rel=0.02)
-    again = pickle.loads(pickle.dumps(state))
+    again = from_checkpoint(state, scene)
     assert again.counters["roller"].depth.tolist() == state.counters["roller"].depth.tolist()
 
 
