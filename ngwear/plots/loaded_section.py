@@ -146,7 +146,7 @@ class _Picture:
         top = max(box[1] + box[3] for box in layout.pressures)
         wide, high = layout.size
         left = [panel for panel, box in zip(panels, layout.pressures, strict=True) if box[0] == first]
-        numbers = [n for p in left for n in p.yaxis.get_major_formatter().format_ticks(p.get_yticks())]
+        numbers = [n for p in left for n in p.yaxis.get_major_formatter().format_ticks(list(p.get_yticks()))]
         clear = 0.14 + FONT / 72 * 0.6 * max(map(len, numbers))
         text = "contact pressure [MPa]"
         figure.text((first - clear) / wide, 0.5 * (low + top) / high, text, rotation=90, va="center", ha="right")
