@@ -215,22 +215,6 @@ class Stepper:
                 state.phases[i] = saved
         self.stand(state)
 
-    def sections(self, state: State) -> list[dict[str, NDArray[np.generic]]]:
-        """The loaded section of each stroke of the cycle on the present outline; changes nothing but the work done.
-
-        Raises
-        ------
-        ConvergenceError
-            If a stroke has no equilibrium there.
-        """
-        found, plan = [], self._next_cycle(state)
-        for i, saved in enumerate(list(state.phases)):
-            self._seen(state, i, plan)
-            state.phases[i] = saved
-            found.append(section_snapshot(state.stage))
-        self.stand(state)
-        return found
-
     def look_ahead(self, state: State) -> list[StrokeReport]:
         """Solve the next cycle's strokes on the present outline, in their order; state and memory are theirs then."""
         plan, reports = self._next_cycle(state), []
@@ -371,7 +355,7 @@ class Stepper:
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """What there is to see at the stroke's equilibrium."""
         stage = state.stage
-        kept = state.strokes + sliding.repeats in self.scene.kept
+        kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
         return StrokeReport(
             phase=index,
             last_stroke=state.strokes,
