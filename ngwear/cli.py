@@ -7,12 +7,11 @@ import json
 import logging
 import os
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ngwear import __version__
-from ngwear.errors import NgwearError, ResultError, SceneError
+from ngwear.errors import NgwearError, ResultError
+from ngwear.files.version import VERSION
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
 BESIDE = (
@@ -25,7 +24,7 @@ BESIDE = (
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ngwear", description="Friction and abrasive wear of rubber parts.")
-    parser.add_argument("--version", action="version", version=f"ngwear {__version__}")
+    parser.add_argument("--version", action="version", version=f"ngwear {VERSION}")
     commands = parser.add_subparsers(dest="command", required=True)
     run = commands.add_parser("run", help="run a scene to its end")
     run.add_argument("scene", type=Path, metavar="SCENE.toml")
@@ -71,6 +70,8 @@ def _parser() -> argparse.ArgumentParser:
     instead = plot.add_mutually_exclusive_group()
     instead.add_argument("--against", type=Path, metavar="DIR", help="draw it beside another run of the same outline")
     instead.add_argument("--animate", action="store_true", help="also draw evolution.gif: outline and pressure moving")
+    which = "draw the loaded section alone, filled by this field, such as 'mean pressure'; a wrong name lists all"
+    instead.add_argument("--field", metavar="NAME", help=which)
     plot.set_defaults(do=_plot)
     compare = commands.add_parser("compare", help="lay a measured profile over a run's worn edge; fit the wear rate")
     compare.add_argument("folder", type=Path, metavar="DIR")
@@ -112,57 +113,32 @@ def _run(options: argparse.Namespace) -> int:
 
     worker = None if options.alone else Worker(*BESIDE)  # loads while this process does
     from ngwear.files.result_folder import COMPLETED
-    from ngwear.scene.pin_scene import PinScene
     from ngwear.scene.read_scene import read_scene
 
-    scene = read_scene(options.scene)
-    if options.accuracy is not None:
-        scene = _with_accuracy(scene, options.accuracy)
-    how = {"out": options.out, "resume": options.resume, "progress": not options.quiet}
-    if isinstance(scene, PinScene):
-        from ngwear.sliding.run_pin import run_pin
+    scene = read_scene(options.scene)  # a bad scene is told before the solver is loaded
+    from ngwear.error_estimates.run import run
 
-        if worker is not None:
-            worker.end()
-        summary = run_pin(scene, **how)
-    elif options.alone:
-        from ngwear.loop.run import run
-
-        summary = run(scene, **how, throw=False).summary
-    else:
-        from ngwear.error_estimates.coarser_runs import run_stated
-
-        if scene.accuracy.error is not None:
-            from ngwear.error_estimates.run_to_error import run_to_error as run_stated
-        summary = run_stated(scene, **how, throw=False, worker=worker).summary
-    if summary["status"] != COMPLETED:
-        print(f"ngwear: gave up: {summary['message']}", file=sys.stderr)
+    result = run(
+        scene,
+        out=options.out,
+        accuracy=options.accuracy,
+        alone=options.alone,
+        resume=options.resume,
+        progress=not options.quiet,
+        throw=False,
+        worker=worker,
+    )
+    if result.status != COMPLETED:
+        print(f"ngwear: gave up: {result.message}", file=sys.stderr)
         print(f"ngwear: what was computed until then is in {options.out}", file=sys.stderr)
         return GAVE_UP
-    for warning in summary.get("warnings", []):
-        print(f"ngwear: warning: {warning}", file=sys.stderr)
-    if not options.quiet:
-        _print_table(summary)
-        print(f"results and figures: {options.out}")
+    if options.quiet:
+        for warning in result.summary.get("warnings", []):
+            print(f"ngwear: warning: {warning}", file=sys.stderr)
+        return OK
+    print(result)
+    print(f"results and figures: {options.out}")
     return OK
-
-
-def _with_accuracy(scene: Any, asked: str) -> Any:
-    """The scene by a preset, or to an error."""
-    from ngwear.scene.accuracy import PRESETS, Accuracy
-    from ngwear.scene.pin_scene import PinScene
-
-    if isinstance(scene, PinScene):
-        raise SceneError("--accuracy", asked, "is for wear: the meshes of a pin are in its scene's [accuracy]")
-    try:
-        new = Accuracy(error=float(asked))
-    except SceneError:
-        raise
-    except ValueError:
-        if asked not in PRESETS:
-            raise SceneError("--accuracy", asked, f"must be one of {list(PRESETS)}, or a number below 1") from None
-        new = Accuracy.preset(asked)
-    return replace(scene, accuracy=scene.accuracy.given(new))
 
 
 def _print_table(values: dict[str, Any]) -> None:
@@ -197,22 +173,15 @@ def _explain(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from ngwear.explanation.assumptions import Assumed
-    from ngwear.explanation.text import lines
-    from ngwear.scene.pin_scene import PinScene
     from ngwear.scene.read_scene import read_scene
 
     scene, assumed = read_scene(options.scene), Assumed().replaced(options.assume)
-    if isinstance(scene, PinScene):
-        from ngwear.explanation.explain_pin import explain_pin
+    from ngwear.explanation.explain import explain
 
-        found = explain_pin(scene, assumed=assumed)
-    else:
-        from ngwear.explanation.explain import explain
-
-        shown = sys.stderr.isatty()
-        with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
-            found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
-    print(json.dumps(found, indent=2) if options.json else "\n".join(lines(found)))
+    shown = sys.stderr.isatty()
+    with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
+        found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
+    print(found.json if options.json else found)
     return OK
 
 
@@ -241,9 +210,14 @@ def _cost(options: argparse.Namespace) -> int:
 def _plot(options: argparse.Namespace) -> int:
     from ngwear.plots.compare import compare
     from ngwear.plots.pin import is_pin_run, plot_pin
-    from ngwear.plots.wear import plot
+    from ngwear.plots.wear import plot, plot_section
 
     pin = is_pin_run(options.folder)
+    if options.field is not None:
+        if pin:
+            raise ResultError(f"{options.folder} is a run of a pin: it has no section of a part")
+        print(plot_section(options.folder, field=options.field))
+        return OK
     if pin and options.animate:
         raise ResultError(f"{options.folder} is a run of a pin: its outline does not wear, there is nothing to animate")
     draw = plot_pin if pin else plot

@@ -8,7 +8,7 @@ from dataclasses import MISSING, fields
 from numbers import Integral, Real
 from typing import Any
 
-LARGEST = 1e15  # of a number in a scene, in any of the units: more is a slip of the pen
+LARGEST, SMALLEST = 1e15, 1e-30  # of a number in a scene, in any of the units: beyond is a slip of the pen
 
 
 class NgwearError(Exception):
@@ -42,7 +42,8 @@ def require(ok: bool, place: str, value: object, remedy: str) -> None:
 def check_fields(record: Any, place: str) -> None:
     """Give the fields of a dataclass the types of their annotations: lists become tuples, whole numbers floats.
 
-    Fields of other types than text, names, numbers and switches, and those that have their default, stay as they are.
+    Fields of other types than text, names, numbers and switches, and those that have their default, stay as they are;
+    so does nan, which no range of a field's own holds.
 
     Raises
     ------
@@ -51,7 +52,8 @@ def check_fields(record: Any, place: str) -> None:
     """
     for f in fields(record):
         value = getattr(record, f.name)
-        if f.default is MISSING or value is not f.default:
+        given = f.default is MISSING or value is not f.default
+        if given and not (isinstance(value, float) and math.isnan(value)):
             object.__setattr__(record, f.name, typed(f"{place}.{f.name}", value, str(f.type)))
 
 
@@ -67,9 +69,13 @@ def typed(place: str, value: Any, kind: str) -> Any:
         return None
     for inner, one, example in _SEQUENCES:
         if kind.startswith((f"Sequence[{inner}]", f"tuple[{inner}")):
-            if isinstance(value, str) or not isinstance(value, Sequence):
+            values: Any = value.tolist() if hasattr(value, "tolist") else value
+            right = isinstance(values, Sequence) and not isinstance(values, str)
+            if not right or (inner == "str" and not all(isinstance(v, str) for v in values)):
                 raise SceneError(place, value, f"must be a list of {one}, such as {example}")
-            return tuple(typed(f"{place}[{i}]", v, inner) for i, v in enumerate(value))
+            if kind == "tuple[float, float]" and len(values) != 2:
+                raise SceneError(place, value, "must be two numbers [x, y]")
+            return tuple(typed(f"{place}[{i}]", v, inner) for i, v in enumerate(values))
     if kind.startswith("bool") and not isinstance(value, bool):
         raise SceneError(place, value, "must be true or false")
     if kind in ("str", "str | None") and not isinstance(value, str):
@@ -83,9 +89,13 @@ def typed(place: str, value: Any, kind: str) -> Any:
     if kind in ("float", "float | None"):
         if isinstance(value, bool) or not isinstance(value, Real):
             raise SceneError(place, value, "must be a number")
-        if not (math.isfinite(value) and abs(value) < LARGEST):
+        size: Any = abs(value)  # of its own type: a whole number may be too large for a float
+        number = float(value) if size < LARGEST else math.inf
+        if not math.isfinite(number):
             raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
-        return float(value)
+        if 0 < abs(number) < SMALLEST:
+            raise SceneError(place, value, f"must be 0, or a number above {SMALLEST:g}")
+        return number
     return value
 
 

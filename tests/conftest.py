@@ -174,6 +174,20 @@ def finished(_finished_once, tmp_path):
     return Path(shutil.copytree(_finished_once, tmp_path / "finished"))
 
 
+@pytest.fixture
+def from_checkpoint(tmp_path):
+    """``from_checkpoint(state, scene)``: the state as a file gives it back."""
+    from ngwear.loop.checkpoint import load, save
+    from ngwear.results.recorder import Folder, Recorder
+
+    def through_a_file(state, scene):
+        folder = Folder(tmp_path / "checkpoint", scene, resume=True)
+        save(folder, state, Recorder(scene))
+        return load(folder, scene)[0]
+
+    return through_a_file
+
+
 def _circle(n: int, radius: float = 1.0, centre=(0.0, 0.0)) -> Outline:
     angle = 2 * np.pi * np.arange(n) / n
     points = radius * np.stack([np.cos(angle), np.sin(angle)], axis=1) + centre

@@ -10,9 +10,11 @@ import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.meshed_section import MeshedSection
 
 if TYPE_CHECKING:  # no memory, no import of it
     from ngwear.fields.background_mesh import Background, Seat
@@ -32,7 +34,7 @@ class Unknowns:
     trial: dict[str, Any]
     test: dict[str, Any]
     state: dict[str, ng.GridFunction] = field(default_factory=dict)
-    points: MaterialPoints | None = None
+    inside: MaterialPoints | None = None
 
     @property
     def u(self) -> Any:
@@ -43,6 +45,20 @@ class Unknowns:
     def v(self) -> Any:
         """Test displacement."""
         return self.test[DISPLACEMENT]
+
+    @property
+    def points(self) -> MaterialPoints:
+        """The material points; SceneError where no term has any."""
+        if self.inside is None:
+            raise SceneError("terms", list(self.trial), "none is of the part's inside: there are no material points")
+        return self.inside
+
+    @property
+    def section(self) -> MeshedSection:
+        """The body of a term along an outline; SceneError where it has none."""
+        if not isinstance(self.body, MeshedSection):
+            raise SceneError("part", type(self.body).__name__, "is no section, and has no outline")
+        return self.body
 
     def seat(self, background: Background) -> Seat:
         """The body on a background that keeps its memory."""
@@ -87,8 +103,8 @@ class Term(abc.ABC):
         """After a solve, update what was fixed in it; True asks for another solve."""
         return False
 
-    def commit(self, strain: Array | None) -> None:  # noqa: B027 - most terms have no memory
-        """Move the memory to the end of a step that is accepted; ``strain`` is that of the material points."""
+    def commit(self, strain: Array) -> None:  # noqa: B027 - most terms have no memory
+        """Move the memory to the end of a step that is accepted; ``strain`` is that of the material points, if any."""
 
     def set_time_step(self, step: float) -> None:  # noqa: B027 - most terms know no time
         """Length of the step that is solved next [s]; infinity for an equilibrium that is left for ever."""

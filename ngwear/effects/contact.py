@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from ngwear.effects.base import DISPLACEMENT, Unknowns
 from ngwear.effects.contact_profile import ContactProfile, EdgeNodes, nodal_pressure
 from ngwear.effects.unilateral import UnilateralContact
-from ngwear.geometry.body import Body
+from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Outline
 from ngwear.surfaces import RigidSurface, WornProfile
 
@@ -38,7 +39,14 @@ class OutlineContact(UnilateralContact):
     the depth of its profile, which has moved along the surface's tangent by ``turned`` [mm]. Each solve takes that
     depth where the state that it starts from touches, and the normal of the unworn surface: the profile must be shallow
     and change little along the tangential displacement of a solve.
+
+    Attributes
+    ----------
+    section : MeshedSection
+        That it is on, once it has been added to a form.
     """
+
+    section: MeshedSection
 
     def __init__(
         self,
@@ -67,7 +75,7 @@ class OutlineContact(UnilateralContact):
         ax, ay = self.surface.approach
         return x - self.slid * ay, y + self.slid * ax
 
-    def pressure_space(self, body: Body) -> ng.FESpace:
+    def pressure_space(self, body: Meshed) -> ng.FESpace:
         space = ng.H1 if self.order == 1 else ng.SurfaceL2
         return ng.Compress(space(body.mesh, order=1, definedon=body.boundary(self.edges)))
 
@@ -79,14 +87,16 @@ class OutlineContact(UnilateralContact):
         return gap if self.counter is None else gap + self._stands_back
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        self.section = unknowns.section
         if self.counter is not None:
             self._stands_back = ng.GridFunction(unknowns.state[self.pressure_name].space)
         if self.wears:
             self.worn = ng.GridFunction(unknowns.state[self.pressure_name].space)
         super().add_to(form, unknowns)
-        self._lay_samples(unknowns.body, self._region)
+        self._lay_samples(self.section, self._region)
 
-    def lengths(self, body: Body) -> ng.GridFunction:
+    def lengths(self, unknowns: Unknowns) -> ng.GridFunction:
+        body = unknowns.section
         line = body.outline
         ends = body.base.at(line.t.ravel()).reshape(-1, 2, 2)
         space = ng.SurfaceL2(body.mesh, order=0)
@@ -95,7 +105,7 @@ class OutlineContact(UnilateralContact):
         field.vec.FV().NumPy()[dofs] = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         return field
 
-    def _lay_samples(self, body: Body, region: ng.Region) -> None:
+    def _lay_samples(self, body: MeshedSection, region: ng.Region) -> None:
         """Mapped points at both ends and in the middle of each mesh edge in contact, in the order of the outline."""
         line = body.outline
         self.positions = line.on(self.edges)
@@ -122,7 +132,7 @@ class OutlineContact(UnilateralContact):
         stretch = self._kinematics.area_stretch(u, ng.Grad(u))
         return ContactProfile.from_samples(
             self.nodes,
-            self._body.contour,
+            self.section.contour,
             self._lengths(),
             pressure=self.end_pressures(),
             stretch=self._sample(stretch),
@@ -141,12 +151,12 @@ class OutlineContact(UnilateralContact):
 
         By the outline's spline, loads would differ from that by 1e-6 of all where a worn arc ends in a kink.
         """
-        if self._measured is None or self._measured[0] is not self._body.contour:
+        if self._measured is None or self._measured[0] is not self.section.contour:
             whole = ng.Integrate(
-                ng.CF(1.0), self._body.mesh, ng.BND, definedon=self._region, order=6, element_wise=True
+                ng.CF(1.0), self.section.mesh, ng.BND, definedon=self._region, order=6, element_wise=True
             )
-            lengths = np.asarray(whole)[self._body.outline.element[self.positions]]
-            self._measured = self._body.contour, lengths
+            lengths = np.asarray(whole)[self.section.outline.element[self.positions]]
+            self._measured = self.section.contour, lengths
         return self._measured[1]
 
     def peak(self) -> float:
@@ -172,7 +182,7 @@ class OutlineContact(UnilateralContact):
 
     def end_places(self) -> Array:
         """Reference coordinates of both ends of each mesh edge, in the order of the outline; shape (m, 2, 2)."""
-        return self._body.contour.at(self._body.outline.t[self.positions].ravel()).reshape(-1, 2, 2)
+        return self.section.contour.at(self.section.outline.t[self.positions].ravel()).reshape(-1, 2, 2)
 
     def end_pressures(self) -> Array:
         """Nominal pressure at both ends of each mesh edge, as the unknown has it; shape (m, 2) [MPa]."""
@@ -195,10 +205,10 @@ class OutlineContact(UnilateralContact):
     def _end_shapes(self) -> tuple[NDArray[np.intp], Array]:
         """Pressure unknowns of each mesh edge, shape (m, 2), and their shape functions at its ends, (m, 2, 2)."""
         space = self._state[self.pressure_name].space
-        elements = [ng.ElementId(ng.BND, int(nr)) for nr in self._body.outline.element[self.positions]]
+        elements = [ng.ElementId(ng.BND, int(nr)) for nr in self.section.outline.element[self.positions]]
         dofs = np.array([space.GetDofNrs(element) for element in elements])
         ends = self._points["x"].reshape(-1, 2)  # on the reference element
-        vertices = self._body.outline.vertices[self.positions]
+        vertices = self.section.outline.vertices[self.positions]
         known: dict[tuple[bool, float], list[Array]] = {}  # by the order of the vertices' numbers, and the direction
         shapes = []
         for element, pair, (first, last) in zip(elements, ends, vertices, strict=True):
@@ -209,11 +219,12 @@ class OutlineContact(UnilateralContact):
         return dofs, np.array(shapes)
 
     def set_worn(self, depth: Array) -> None:
-        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P."""
-        self._interpolate(self.worn, self._along_outline(depth))
+        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P, where any is kept."""
+        if self.worn is not None:
+            self._interpolate(self.worn, self._along_outline(depth))
 
     def _along_outline(self, values: Array) -> Array:
-        ends = self._body.outline.t[self.positions]
+        ends = self.section.outline.t[self.positions]
         return np.interp(ends, np.arange(len(values) + 1), np.append(values, values[0]))
 
     def sample_middles(self, field: ng.CoefficientFunction) -> Array:
@@ -225,13 +236,15 @@ class OutlineContact(UnilateralContact):
 
     def set_edge_values(self, field: ng.GridFunction, values: Array) -> None:
         """The other way round: give such a field its values."""
-        elements = self._body.outline.element[self.positions]
+        elements = self.section.outline.element[self.positions]
         dofs = [field.space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in elements]
         field.vec.FV().NumPy()[dofs] = values
 
     def set_share(self, values: Array | float) -> None:
-        """Give ``share`` its values at the nodes of ``profile``."""
-        vertices = self._body.outline.vertices[self.positions]
+        """Give ``share``, if there is one, its values at the nodes of ``profile``."""
+        if self.share is None:
+            return
+        vertices = self.section.outline.vertices[self.positions]
         self.share.vec.FV().NumPy()[vertices] = np.broadcast_to(values, len(self.nodes.t))[self.nodes.of_edges]
 
     def at_nodes(self, field: ng.CoefficientFunction) -> Array:

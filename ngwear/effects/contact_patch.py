@@ -95,7 +95,8 @@ class PatchContact(UnilateralContact):
     def pressure_space(self, body: Meshed) -> ng.FESpace:
         return ng.Compress(ng.SurfaceL2(body.mesh, order=0, definedon=body.boundary(self.edges)))
 
-    def lengths(self, body: Meshed) -> ng.GridFunction:
+    def lengths(self, unknowns: Unknowns) -> ng.GridFunction:
+        body = unknowns.body
         space = ng.SurfaceL2(body.mesh, order=0)
         field = ng.GridFunction(space)
         areas = np.array(ng.Integrate(ng.CF(1.0), body.mesh, ng.BND, element_wise=True))

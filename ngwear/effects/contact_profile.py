@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.geometry.body import Body
+from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Outline
 
 Array = NDArray[np.float64]
@@ -53,7 +53,7 @@ class EdgeNodes:
     of_edges: NDArray[np.intp]
 
     @classmethod
-    def on(cls, body: Body, positions: NDArray[np.intp]) -> EdgeNodes:
+    def on(cls, body: MeshedSection, positions: NDArray[np.intp]) -> EdgeNodes:
         """Of the mesh edges at these positions of the body's outline."""
         ends = np.round(body.outline.t[positions] % len(body.base), 9)
         t, node = np.unique(ends, return_inverse=True)
@@ -66,7 +66,7 @@ class EdgeNodes:
 
     def total(self, samples: Array) -> Array:
         """Sum at each node of samples at the ends of the mesh edges, shape (m, 2)."""
-        return np.bincount(self.of_edges.ravel(), samples.ravel(), len(self.t))
+        return _summed(self.of_edges.ravel(), samples.ravel(), len(self.t))
 
     def average(self, samples: Array) -> Array:
         """Mean at each node of samples at the ends of the mesh edges, shape (m, 2)."""
@@ -241,7 +241,7 @@ def _gathered(nodes: EdgeNodes, lengths: Array, lumped: Array, load: Array) -> A
     giver = np.where(flow > 0, second, first)
     most = load / np.maximum(np.bincount(giver, minlength=len(load)), 1)
     flow = np.clip(flow, -most[giver], most[giver])
-    return np.bincount(first, flow, len(load)) - np.bincount(second, flow, len(load))
+    return _summed(first, flow, len(load)) - _summed(second, flow, len(load))
 
 
 def _grading_bias(nodes: EdgeNodes, lengths: Array, apart: Array, mean: Array) -> Array:
@@ -250,6 +250,11 @@ def _grading_bias(nodes: EdgeNodes, lengths: Array, apart: Array, mean: Array) -
     n = len(nodes.t)
 
     def jump(values: Array) -> Array:
-        return np.bincount(after, values, n) - np.bincount(before, values, n)
+        return _summed(after, values, n) - _summed(before, values, n)
 
     return np.where(nodes.meeting == 2, jump(mean) / apart * jump(lengths) / 3, 0.0)
+
+
+def _summed(index: NDArray[np.intp], values: Array, n: int) -> Array:
+    """Sum of the values at each of n places, of whose numbers they have one each."""
+    return np.bincount(index, values, n)  # type: ignore[return-value] # NumPy's stub knows counts only, no weights

@@ -10,7 +10,7 @@ import numpy as np
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
 from ngwear.effects.contact import OutlineContact
 from ngwear.errors import SceneError
-from ngwear.geometry.body import Body
+from ngwear.geometry.meshed_section import MeshedSection
 
 CENTRE = 2 / 5  # of the way in contact: how far from its inner end a square root of the way has its centre
 STAYS = 5e-4  # of what the contacts carry: a change of the fluid's load with which the front stands
@@ -54,7 +54,7 @@ class FluidPressure(Term):
         self.leaks, self._solved = False, False
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
-        body = unknowns.body
+        body = unknowns.section
         region = body.boundary(self.edges)
         self._body, self._unknowns, self._region = body, unknowns, region
         self.wetted = ng.GridFunction(ng.SurfaceL2(body.mesh, order=0))
@@ -67,7 +67,7 @@ class FluidPressure(Term):
         self._lay_path(body)
         self.refresh()
 
-    def _lay_path(self, body: Body) -> None:
+    def _lay_path(self, body: MeshedSection) -> None:
         """Order the mesh edges that the fluid may reach outwards from the inlet's last one, once in each direction."""
         line = body.outline
         reach = np.isin(line.names, self.edges)
@@ -127,6 +127,11 @@ class FluidPressure(Term):
         touching, _, _ = self._contact()
         first = [(step, path[touching[path]][:1]) for step, path in self._paths]
         return np.concatenate([self._body.outline.t[edge, 0 if step == 1 else 1] for step, edge in first])
+
+    @property
+    def shares(self) -> np.ndarray:
+        """What chi is on each mesh edge, in the order of the outline, shape (m,) [-]."""
+        return self.wetted.vec.FV().NumPy()[self._unknown]
 
     def leak_pressure(self) -> tuple[float, str]:
         """Fluid pressure that the contacts hold as they are [MPa], and the name of the edge that would give way first.

@@ -42,6 +42,7 @@ class Friction(Term):
     """
 
     symmetric = False
+    _unknowns: Unknowns
 
     def __init__(self, contact: UnilateralContact, law: FrictionLaw | float, *, speed: float | None = None) -> None:
         super().__init__()

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.coefficient import Coefficient
+from ngwear.errors import SceneError
 from ngwear.laws import WearLaw
 from ngwear.laws.wear_law import NO_FRICTION
 
@@ -34,10 +35,18 @@ class PressureWear:
         Shear modulus of the body [MPa].
     coefficient : Coefficient or None
         Of the contact's friction, for a law that needs it.
+
+    Raises
+    ------
+    SceneError
+        If the law needs friction and there is none.
     """
 
     def __init__(self, law: WearLaw, *, modulus: float, coefficient: Coefficient | None = None) -> None:
-        self._law, self._coefficient, self._least = law, coefficient, LEAST * modulus
+        if law.needs_friction and coefficient is None:
+            raise SceneError("contact.wear_law", law, "wears by the work of friction: give the contact a friction")
+        self._law, self._least = law, LEAST * modulus
+        self._coefficient = coefficient if law.needs_friction else None
         self._bound = ng.Parameter(0.0)
 
     def tangent(self, pressure: ng.GridFunction, stretch: Any) -> tuple[Any, Any, Any]:
@@ -72,4 +81,4 @@ class PressureWear:
 
     def _friction(self, pressure: Any) -> tuple[Any, Any]:
         """Coefficient mu [-] and its slope [1/MPa], for a law that needs them."""
-        return self._coefficient.with_slope(pressure) if self._law.needs_friction else NO_FRICTION
+        return NO_FRICTION if self._coefficient is None else self._coefficient.with_slope(pressure)

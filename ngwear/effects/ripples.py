@@ -46,7 +46,7 @@ class Ripples:
         ahead = along + ng.Grad(unknowns.state[DISPLACEMENT]) * along  # its sign has no tangent
         tangent = contact.surface.tangent(*contact.place(unknowns.trial))
         way = ng.IfPos(ahead[0] * tangent[0] + ahead[1] * tangent[1], 1.0, -1.0)
-        shift = SHIFT * contact.lengths(unknowns.body) * way
+        shift = SHIFT * contact.lengths(unknowns) * way
         change = ng.Grad(unknowns.v).Trace() * along
         virtual = change[0] * tangent[0] + change[1] * tangent[1]
         self.moved = (unknowns.trial[contact.pressure_name] - self._smooth) * shift * virtual

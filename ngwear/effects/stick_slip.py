@@ -53,7 +53,7 @@ class StickSlip(Friction):
         contact, body, weight = self.contact, unknowns.body, unknowns.kinematics.weight
         self._unknowns = unknowns
         self._before = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
-        give = contact.lengths(body) / contact.modulus
+        give = contact.lengths(unknowns) / contact.modulus
         tangents = contact.surface.tangents(*contact.place(unknowns.trial))
         tractions = [unknowns.trial[name] for name in self.tractions]
         p = unknowns.trial[contact.pressure_name] - NOTHING * contact.modulus
@@ -79,10 +79,13 @@ class StickSlip(Friction):
     def begin(self) -> None:
         """Let a stroke begin in the present state: slip, way and heat are counted from here."""
         self.travel.Set(0.0)
-        self.commit(None)
+        self._count_from_here()
         self._spent, self._slid = 0.0, 0.0
 
-    def commit(self, strain: Array | None) -> None:
+    def commit(self, strain: Array) -> None:
+        self._count_from_here()
+
+    def _count_from_here(self) -> None:
         """Let the next step's slip be counted from the present state."""
         self._spent, self._slid = self.heat(0.0), self.slid()
         state, contact = self._unknowns.state, self.contact

@@ -68,6 +68,8 @@ class UnilateralContact(Term):
         it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
     """
 
+    _points: Any  # of the mesh, mapped
+
     def __init__(
         self,
         name: str,
@@ -112,7 +114,7 @@ class UnilateralContact(Term):
         return ng.ds(definedon=self._region, bonus_intorder=2)
 
     @abc.abstractmethod
-    def lengths(self, body: Meshed) -> ng.GridFunction:
+    def lengths(self, unknowns: Unknowns) -> ng.GridFunction:
         """Length of each surface element as it was made [mm]; constant on it, so that P adds up to what g asks."""
 
     @abc.abstractmethod
@@ -161,7 +163,7 @@ class UnilateralContact(Term):
         self._state, self._kinematics = unknowns.state, kinematics
         self._start = ng.GridFunction(unknowns.state[DISPLACEMENT].space)
         stretch = kinematics.area_stretch(self._start, ng.Grad(self._start))
-        lengths = self.lengths(body)
+        lengths = self.lengths(unknowns)
         edges = lengths.vec.FV().NumPy()
         self.finest = float(edges[edges > 0].min())
         give = lengths / self.modulus

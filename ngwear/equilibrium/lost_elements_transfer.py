@@ -8,8 +8,8 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Array
 from ngwear.equilibrium.problem import Problem
-from ngwear.equilibrium.state_transfer import contact_pairs, sticking_pairs
-from ngwear.geometry.element_body import ElementBody, Index
+from ngwear.equilibrium.state_transfer import contact_pairs, sticking
+from ngwear.geometry.element_body import ElementBody, Index, elements
 
 NONE = -1
 
@@ -19,11 +19,11 @@ def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
 
     A point that another has been merged with keeps its own values; surfaces that were inside begin without pressure.
     """
-    was, now = old.body, new.body
+    was, now = elements(old.body), elements(new.body)
     inside = _unknowns(was, now)
     scalar = old.part(DISPLACEMENT).stop - old.part(DISPLACEMENT).start
-    pairs = contact_pairs(old, new)
-    twins = {after.name: _twins(was, before.positions, now, after.positions) for before, after in pairs}
+    pairs = {after.name: (before, after) for before, after in contact_pairs(old, new)}
+    twins = {name: _twins(was, before.positions, now, after.positions) for name, (before, after) in pairs.items()}
     shown = old.state.vec.FV().NumPy()
     before_all, kept = shown.copy(), []
     for state in states:
@@ -36,18 +36,19 @@ def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         target[new.part(DISPLACEMENT)] = displacement[:, inside].ravel()
         vertices = inside[: now.mesh.nv]
         target[new.part(VOLUMETRIC_STRESS)] = state[old.part(VOLUMETRIC_STRESS)][vertices]
-        for before, after in pairs:
+        for before, after in pairs.values():
             twin = twins[after.name]
             ends = np.where((twin >= 0)[:, None], before.end_pressures()[twin], 0.0)
             target[new.part(after.pressure_name)] = after.pressure_vector(ends)
             if after.force_controlled:
                 target[new.part(after.travel_name)] = state[old.part(before.travel_name)]
         new.state.vec.data = out
-        for before, after in sticking_pairs(old, new):
-            twin = twins[after.contact.name]
-            for name in after.tractions:
-                values = np.where(twin >= 0, before.contact.edge_values(old.fields[name])[twin], 0.0)
-                after.contact.set_edge_values(new.fields[name], values)
+        for friction in sticking(new):
+            twin = twins[friction.contact.name]
+            before, after = pairs[friction.contact.name]
+            for name in friction.tractions:
+                values = np.where(twin >= 0, before.edge_values(old.fields[name])[twin], 0.0)
+                after.set_edge_values(new.fields[name], values)
         kept.append(new.state.vec.FV().NumPy().copy())
     shown[:] = before_all
     return kept

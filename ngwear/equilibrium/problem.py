@@ -35,12 +35,12 @@ class FixedEdges:
 
     Parameters
     ----------
-    edges : tuple of str
+    edges : sequence of str
     x, y, z : bool
         Whether the component is held at zero.
     """
 
-    edges: tuple[str, ...]
+    edges: Sequence[str]
     x: bool = True
     y: bool = True
     z: bool = True
@@ -85,18 +85,18 @@ class Problem:
         self.fields = dict(zip(self.names, self.state.components, strict=True))
         self.form = ng.BilinearForm(self.space, check_unused=False)
         self._volume = [term for term in self.terms if isinstance(term, VolumeTerm)]
-        self.points: MaterialPoints | None = None
+        self._points: MaterialPoints | None = None
         if self._volume:
             on = (spaces[DISPLACEMENT].components[0], spaces[VOLUMETRIC_STRESS])
             places = {"displacement": self.part(DISPLACEMENT), "pressure": self.part(VOLUMETRIC_STRESS)}
-            self.points = MaterialPoints(body, kinematics, *on, **places)
+            self._points = MaterialPoints(body, kinematics, *on, **places)
         unknowns = Unknowns(
             body=body,
             kinematics=kinematics,
             trial=dict(zip(self.names, self.space.TrialFunction(), strict=True)),
             test=dict(zip(self.names, self.space.TestFunction(), strict=True)),
             state=self.fields,
-            points=self.points,
+            inside=self._points,
         )
         for term in self.terms:
             term.add_to(self.form, unknowns)
@@ -108,6 +108,13 @@ class Problem:
         self._imbalance: ng.BaseVector | None = None
         self._matrix: Tangent | None = None
         self.solver: DirectSolver | None = None
+
+    @property
+    def points(self) -> MaterialPoints:
+        """The material points; SceneError if no term is of the part's inside."""
+        if self._points is None:
+            raise SceneError("terms", self.names, "none is of the part's inside: there are no material points")
+        return self._points
 
     def freeze_imbalance(self) -> None:
         """Take the present residual as a fictitious load, so that the present state is an equilibrium.
@@ -156,7 +163,7 @@ class Problem:
 
     def commit(self) -> None:
         """Accept the present state: memory moves to it."""
-        strain = None if self.points is None else self.points.strain(self.state.vec.FV().NumPy())
+        strain = np.empty(0) if self._points is None else self._points.strain(self.state.vec.FV().NumPy())
         for term in self.terms:
             term.commit(strain)
 
@@ -176,10 +183,10 @@ class Problem:
             term.gather()
         self.form.Apply(self.state.vec, out)
         values = out.FV().NumPy()
-        if self.points is not None:
+        if self._points is not None:
             stress, _ = self._response(tangent=False)
-            forces = self.points.forces(stress)
-            values += np.bincount(self.points.unknowns.ravel(), forces.ravel(), minlength=len(values))
+            forces = self._points.forces(stress)
+            values += np.bincount(self._points.unknowns.ravel(), forces.ravel(), minlength=len(values))
         values[self._held] = 0.0
         if self._imbalance is not None:
             out.data -= self.parameters[IMBALANCE].Get() * self._imbalance
@@ -187,20 +194,26 @@ class Problem:
     def assemble(self) -> ng.BaseMatrix:
         """The tangent at the present state."""
         self.form.AssembleLinearization(self.state.vec)
-        if self.points is None:
+        if self._points is None:
             return self.form.mat
         _, slope = self._response(tangent=True)
         if self._matrix is None:
-            self._matrix = Tangent(self.form.mat, self.points.unknowns)
-        self._matrix.fill(self.form.mat, self.points.stiffness(slope))
+            self._matrix = Tangent(self.form.mat, self._points.unknowns)
+        self._matrix.fill(self.form.mat, self._points.stiffness(slope))
         return self._matrix.matrix
 
-    def _response(self, *, tangent: bool) -> tuple[Array, Array | None]:
-        """Stress of all terms inside the section, and its derivative."""
+    def _response(self, *, tangent: bool) -> tuple[Array, Array]:
+        """Stress of all terms inside the section, and its derivative, 0 if that is not asked for."""
         self.points.follow()
         strain = self.points.strain(self.state.vec.FV().NumPy())
         responses = [term.response(strain, tangent=tangent) for term in self._volume]
-        return sum(stress for stress, _ in responses), sum(slope for _, slope in responses) if tangent else None
+        slopes = (slope for _, slope in responses if slope is not None)
+        return sum((stress for stress, _ in responses), np.zeros(())), sum(slopes, np.zeros(()))
+
+    def stress(self) -> tuple[Array, Array]:
+        """Strains of the present state at the material points, and the stress of all terms conjugate to them [MPa]."""
+        stress, _ = self._response(tangent=False)
+        return self.points.strain(self.state.vec.FV().NumPy()), stress
 
     def hoop_force(self) -> float:
         """Radial resultant of the hoop tension of an axisymmetric part, ``2 pi int P_hoop dA`` [N], of all terms."""

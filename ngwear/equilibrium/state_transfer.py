@@ -34,7 +34,8 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     bodies as they are. Both problems must have the same unknowns.
     """
     search = PointSearch(old.body.mesh, _node_places(new), old.body.deformation)
-    near = {after.name: _neighbours(before, after) for before, after in contact_pairs(old, new)}
+    pairs = {after.name: (before, after) for before, after in contact_pairs(old, new)}
+    near = {name: _neighbours(before, after) for name, (before, after) in pairs.items()}
     keep = old.state.vec.FV().NumPy().copy()
     carried = []
     for state in states:
@@ -43,7 +44,7 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
         out[:] = 0.0
         target = out.FV().NumPy()
         _take_inside(search, old, new, target)
-        for before, after in contact_pairs(old, new):
+        for before, after in pairs.values():
             index, weight, same, twin = near[after.name]
             ends = (before.profile().nominal_pressure[index] * weight).sum(axis=-1)
             ends[same] = before.end_pressures()[twin[same]]
@@ -51,11 +52,11 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
             if after.force_controlled:
                 target[new.part(after.travel_name)] = state[old.part(before.travel_name)]
         new.state.vec.data = out
-        for before, after in sticking_pairs(old, new):
-            *_, twin = near[after.contact.name]
-            for name in after.tractions:
-                values = before.contact.edge_values(old.fields[name])[twin]
-                after.contact.set_edge_values(new.fields[name], values)
+        for friction in sticking(new):
+            *_, twin = near[friction.contact.name]
+            before, after = pairs[friction.contact.name]
+            for name in friction.tractions:
+                after.set_edge_values(new.fields[name], before.edge_values(old.fields[name])[twin])
         unfold(new)
         carried.append(new.state.vec.FV().NumPy().copy())
     old.state.vec.FV().NumPy()[:] = keep
@@ -126,14 +127,13 @@ def contact_pairs(old: Problem, new: Problem) -> list[tuple[OutlineContact, Outl
     return [(before[t.name], t) for t in new.terms if isinstance(t, OutlineContact)]
 
 
-def sticking_pairs(old: Problem, new: Problem) -> list[tuple[StickSlip, StickSlip]]:
-    """Frictions that stick, likewise."""
-    if not any(t.remembers for t in new.terms):
+def sticking(problem: Problem) -> list[StickSlip]:
+    """Frictions that stick."""
+    if not any(t.remembers for t in problem.terms):
         return []
     from ngwear.effects.stick_slip import StickSlip
 
-    before = {t.contact.name: t for t in old.terms if isinstance(t, StickSlip)}
-    return [(before[t.contact.name], t) for t in new.terms if isinstance(t, StickSlip)]
+    return [t for t in problem.terms if isinstance(t, StickSlip)]
 
 
 def _node_places(problem: Problem) -> Array:

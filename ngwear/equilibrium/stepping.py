@@ -142,13 +142,19 @@ def advance(
     return work
 
 
-def relax(problem: Problem, options: StepOptions | None = None, **kwargs: Callable[[float, Report], None]) -> Work:
+def relax(
+    problem: Problem,
+    options: StepOptions | None = None,
+    *,
+    duration: float = math.inf,
+    on_step: Callable[[float, Report], None] | None = None,
+) -> Work:
     """Walk from the present state, any admissible guess, to the equilibrium under the present loads.
 
-    The guess's imbalance becomes a fictitious load that is taken away in steps. Raises as ``advance`` does.
+    The guess's imbalance becomes a fictitious load that is taken away in steps. Arguments and errors as of ``advance``.
     """
     problem.freeze_imbalance()
     try:
-        return advance(problem, {IMBALANCE: 0.0}, options, **kwargs)
+        return advance(problem, {IMBALANCE: 0.0}, options, duration=duration, on_step=on_step)
     finally:
         problem.drop_imbalance()

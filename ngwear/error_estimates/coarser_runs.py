@@ -41,14 +41,15 @@ from typing import Any
 import numpy as np
 
 from ngwear.errors import NgwearError
-from ngwear.loop.run import DrawnHere, Result
+from ngwear.loop.result import Result
+from ngwear.loop.run import DrawnHere
 from ngwear.loop.run import run as run_scene
-from ngwear.parallel.workers import Worker
+from ngwear.parallel.workers import Worker, of_modules
+from ngwear.results.kept_sections import KeptSections
 from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
 from ngwear.results.recorder import TORN, Recorder, fingerprint
-from ngwear.results.result_file import Snapshot
-from ngwear.results.richardson import Reading, relative_errors
-from ngwear.scene.accuracy import LEAST_ACROSS
+from ngwear.results.richardson import relative_errors
+from ngwear.scene.accuracy import LEAST_ACROSS, Tolerances
 from ngwear.scene.scene import Scene
 
 COARSER, LEAST_COARSER = 2.0, 1.2
@@ -56,23 +57,25 @@ FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's fol
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 HERE = DrawnHere()
+Histories = Mapping[str, Mapping[str, list[float]]]  # as of ``quantities_of_interest.reading``
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with elements of so many times the edge, and jumps that may err by as many times as much."""
-    accuracy = scene.accuracy
-    tolerances = {
-        "stress_error": min(1.0, factor**2 * accuracy.stress_error),
-        "wear_error": min(0.5, factor * accuracy.wear_error),
-        "longest_jump": min(1.0, factor * accuracy.longest_jump),
-        "depth_error": min(1.0, factor * accuracy.depth_error),
-    }
+    accuracy, old = scene.accuracy, scene.accuracy.tolerances
+    tolerances = Tolerances(
+        stress_error=min(1.0, factor**2 * old.stress_error),
+        wear_error=min(0.5, factor * old.wear_error),
+        longest_jump=min(1.0, factor * old.longest_jump),
+        depth_error=min(1.0, factor * old.depth_error),
+    )
     if accuracy.across is not None:
         across = max(accuracy.across / factor, LEAST_ACROSS)
-        return replace(scene, accuracy=accuracy.with_across(across, **tolerances))
-    patch = factor * accuracy.patch
-    lengths = {"patch": patch, "coarse": factor * accuracy.coarse, "mounting": max(accuracy.mounting, patch)}
-    changed = replace(accuracy, **lengths, **tolerances)
+        return replace(scene, accuracy=accuracy.with_across(across, **vars(tolerances)))
+    lengths = accuracy.lengths
+    patch = factor * lengths.patch
+    coarse, mounting = factor * lengths.coarse, max(lengths.mounting, patch)
+    changed = replace(accuracy, patch=patch, coarse=coarse, mounting=mounting, **vars(tolerances))
     lost = scene.deactivation
     if lost is not None:
         lost = replace(lost, depth=max(lost.depth, patch))  # at least one layer
@@ -96,9 +99,9 @@ def coarser_by(mine: float, other: float) -> float:
 def stated(
     scene: Scene,
     embedded: Mapping[str, float],
-    mine: Reading,
-    other: Reading,
-    coarsest: Reading | None = None,
+    mine: Histories,
+    other: Histories,
+    coarsest: Histories | None = None,
     *,
     ratio: float = COARSER,
 ) -> dict[str, float]:
@@ -138,7 +141,12 @@ def stated(
     return out
 
 
-def growth(mine: Reading) -> float:
+def excess(errors: Mapping[str, float], asked: Mapping[str, float]) -> float:
+    """The largest of the stated errors over those asked for, by their names [-]; 0 if none of them is stated."""
+    return max((errors[name] / limit for name, limit in asked.items() if name in errors), default=0.0)
+
+
+def growth(mine: Histories) -> float:
     """The power of the area lost in all with which the greatest depth grows along the last half of a run, 0 to 1.
 
     Contacts that widen as they wear take more area for the same depth: 2/3 of a parabola's, 1/2 of a wedge.
@@ -158,16 +166,16 @@ def run_stated(
     throw: bool = True,
     figures: bool = True,
     told: Callable[[dict[str, Any]], None] | None = None,
-    enough: float | None = None,
+    enough: Mapping[str, float] | None = None,
     worker: Worker | None = None,
 ) -> Result:
     """Run a scene and, beside it in a second process, its companions; ``summary["error estimates"]`` is from all.
 
     Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Where the first
-    companion shows an error of the greatest depth of no more than ``enough``, taken as of first order, there is no
-    coarsest. Companions that give up lose nothing: without the coarsest, errors are taken as of first order; without
-    both, those of the mesh are not known. The summary then warns. They run in ``worker``, which ends with this, or in
-    one that begins here. It draws half of the figures, too, if it has nothing else to do by then.
+    companion, taken as of first order, shows no error above those of ``enough``, by their names, there is no coarsest.
+    Companions that give up lose nothing: without the coarsest, errors are taken as of first order; without both, those
+    of the mesh are not known. The summary then warns. They run in ``worker``, which ends with this, or in one that
+    begins here. It draws half of the figures, too, if it has nothing else to do by then.
     """
     companions = _Companions(scene, Path(out), enough, worker)
 
@@ -195,7 +203,7 @@ class _Companions:
     Those of an earlier process are taken from there. The process draws as well (``ngwear.loop.run.Drawing``).
     """
 
-    def __init__(self, scene: Scene, folder: Path, enough: float | None, worker: Worker | None) -> None:
+    def __init__(self, scene: Scene, folder: Path, enough: Mapping[str, float] | None, worker: Worker | None) -> None:
         self.scene, self.enough, self.worker = scene, enough, worker
         self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
         self.begun: list[tuple[Scene, Path]] = []
@@ -209,16 +217,16 @@ class _Companions:
             self.worker.end()
 
     def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
-        """Let those run that have not left anything."""
-        if any(left_by(*run) is None for run in runs):
+        """Let those run that have not left anything; with laws of a script's own this process does, once it can."""
+        if of_modules(self.scene) and any(left_by(*run) is None for run in runs):
             self.worker = self.worker or Worker(__name__)
             self.worker.do(_leave, runs)
             self.begun += runs
 
-    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
-        """Have the mesh drawn by the worker once it has run what it was told to; without one, with the rest."""
+    def first(self, folder: Path, kept: KeptSections) -> None:
+        """Have the section drawn by the worker once it has run what it was told to; without one, with the rest."""
         if self.worker is not None:
-            self.worker.do(HERE.mesh, folder, scene, first)
+            self.worker.do(HERE.first, folder, kept)
 
     def rest(self, folder: Path) -> None:
         """Draw the figures of the run: half of them in the worker, if it is through with the runs."""
@@ -240,7 +248,7 @@ class _Companions:
         ratio = coarser_by(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
         known = stated(self.scene, embedded, mine, other["reading"], ratio=ratio)
         left = [(other, "companion")]
-        if self.enough is None or known[DEPTH] > self.enough:
+        if self.enough is None or excess(known, self.enough) > 1:
             self._begin(self.runs[1:])
             coarsest = self._left(*self.runs[1])
             if "gave up" in coarsest:
@@ -256,6 +264,8 @@ class _Companions:
 
     def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for what one of them leaves."""
+        if not of_modules(self.scene):
+            _leave([(scene, file)])
         while left_by(scene, file) is None and self.worker is not None and self.worker.alive and not self.worker.idle:
             time.sleep(POLL)
         return left_by(scene, file) or {"gave up": "it ended without a word"}
@@ -272,7 +282,7 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
 
 def left_of(result: Result) -> dict[str, Any]:
     """What a run that ended leaves as a companion: its readings, its element edge, and what it took."""
-    rows = result.recorder.rows
+    rows = result.records.rows
     read = {"reading": reading(rows), "element edge [mm]": element_edge(rows)}
     return read | {cost: result.summary[cost + unit] for cost, unit in COSTS}
 

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
-import json
 import math
 import tempfile
 import time
@@ -15,7 +12,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from ngwear import __version__
 from ngwear.error_estimates.cost_runs import DEPTH, PEAK, Limited, Point, measure
 from ngwear.error_estimates.cost_study import Study
 from ngwear.error_estimates.cost_table import as_dict, table
@@ -25,8 +21,10 @@ from ngwear.error_estimates.settings import Knob, at, changes, knobs
 from ngwear.error_estimates.settings_search import Choice, climb, confirm
 from ngwear.errors import SceneError
 from ngwear.files.result_folder import GAVE_UP, OutFolder
+from ngwear.files.version import VERSION
 from ngwear.parallel.sweep import sweep
 from ngwear.parallel.workers import one_thread_pool
+from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
 from ngwear.units import UNITS
@@ -69,7 +67,7 @@ class Cost:
         found = as_dict(self.study, self.choices)
         for choice, written in zip(found["recommended"], self.written, strict=True):
             choice["change in the scene"] = written
-        return head | found | {"units": UNITS, "ngwear": __version__}
+        return head | found | {"units": UNITS, "ngwear": VERSION}
 
     def table(self) -> list[dict[str, Any]]:
         """As in ``cost.csv``: one row a run."""
@@ -89,7 +87,8 @@ def cost(
     Each run has a process of one thread to itself, one after the other, so that its seconds and its memory are its own.
     Decisions rest on the recorded seconds of the runs alone: a call with the same folder and budget repeats them and
     runs nothing, one that was killed goes on, and one with a larger budget goes further. Where there is a sealed fluid,
-    the leak pressure is read as well, as if the scene asked for it.
+    the leak pressure is read as well, as if the scene asked for it. A scene that asks for an error is taken by the
+    preset ``engineering``, whose settings are then varied.
 
     Parameters
     ----------
@@ -114,6 +113,8 @@ def cost(
         raise SceneError("cost.budget", budget, "must be finite and greater than 0 s")
     if isinstance(scene, Scene) and scene.fluid is not None:
         scene = replace(scene, fluid=replace(scene.fluid, leak_pressure=True))
+    if isinstance(scene, Scene) and scene.accuracy.error is not None:  # the study shows what an error takes
+        scene = replace(scene, accuracy=scene.accuracy.given(Accuracy.engineering()))
     chosen = knobs(scene)
     ladders = tuple(knob.ladder for knob in chosen)
     main = DEPTH if isinstance(scene, PinScene) or scene.worn_edges else PEAK
@@ -170,7 +171,8 @@ def _worth_another(found: Measurement, left: float) -> bool:
 def _measured(point: Point, left: float, folder: Path) -> tuple[Measurement, bool]:
     start = time.perf_counter()
     with one_thread_pool(1) as workers:
-        (outcome,) = sweep(measure, [point], executor=Limited(workers, left), folder=folder, resume=True)
+        limited = Limited(workers, left)
+        (outcome,) = sweep(measure, [point], executor=limited, folder=folder, resume=True, classes=(Measurement,))
     if outcome.failure is None:
         return outcome.result, outcome.restored
     message = f"{outcome.failure.kind}: {outcome.failure.message}"
@@ -178,13 +180,8 @@ def _measured(point: Point, left: float, folder: Path) -> tuple[Measurement, boo
 
 
 def _write(out: OutFolder, found: Cost, *, figures: bool) -> None:
-    text = io.StringIO()
-    rows = found.table()
-    writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    out.replace(CSV, lambda file: file.write(text.getvalue().encode()))
-    out.replace(JSON, lambda file: file.write((json.dumps(found.as_dict(), indent=2) + "\n").encode()))
+    out.write_table(CSV, found.table())
+    out.write_json(JSON, found.as_dict())
     if figures and found.study.front():
         from ngwear.error_estimates.cost_figure import draw_cost
 

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
+import _thread
+import faulthandler
 import functools
 import math
+import os
 import signal
+import threading
 import time
 from collections.abc import Callable
-from concurrent.futures import Executor, Future
+from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import dataclass, replace
 from types import FrameType
 from typing import Any
 
 from ngwear.error_estimates.ladder import STOPPED, Measurement
 from ngwear.errors import NgwearError
-from ngwear.files.result_folder import COMPLETED, GAVE_UP, peak_memory
+from ngwear.files.peak_memory import peak_memory
+from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.results.recorder import LEAK
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
 
 DEPTH, PEAK = "maximum depth [mm]", "peak pressure [MPa]"
 NO_TIME = "no time was left"
+GRACE = 60.0  # s, for one call of a compiled library
 
 
 class OutOfTimeError(Exception):
@@ -38,39 +44,71 @@ class _Clock:
         if self.over:
             raise OutOfTimeError
 
+    def ring(self) -> None:
+        """Interrupt the main thread as the keyboard does, which every platform knows how to."""
+        self.over = True
+        _thread.interrupt_main()
+
+    def stop(self, _: int, __: FrameType | None) -> None:
+        """What an interruption does."""
+        if math.isnan(self.sent):
+            return  # the run has ended in the meantime
+        self.check()
+        raise KeyboardInterrupt  # it was the keyboard
+
 
 _clock = _Clock()
 
 
 class Limited(Executor):
-    """Another executor whose calls are stopped after so many wall seconds, those of its process' start included."""
+    """Another executor whose calls are stopped after so many wall seconds, those of its process' start included.
 
-    def __init__(self, executor: Executor, seconds: float) -> None:
-        self._executor, self._seconds = executor, seconds
+    A call that takes no notice for ``grace`` more seconds, inside of a compiled library, is ended with its process.
+    """
+
+    def __init__(self, executor: Executor, seconds: float, *, grace: float = GRACE) -> None:
+        self._executor, self._seconds, self._grace = executor, seconds, grace
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        call = functools.partial(function, *args, **kwargs)
-        return self._executor.submit(_timed, time.time(), self._seconds, call)
+        call, sent = functools.partial(function, *args, **kwargs), time.time()
+        told: Future[Any] = Future()
+
+        def tell(done: Future[Any]) -> None:
+            error, wall = done.exception(), time.time() - sent
+            if isinstance(error, BrokenExecutor) and wall > self._seconds:
+                told.set_result(Measurement(status=STOPPED, message=NO_TIME, wall=wall))
+            elif error is not None:
+                told.set_exception(error)
+            else:
+                told.set_result(done.result())
+
+        self._executor.submit(_timed, sent, self._seconds, self._grace, call).add_done_callback(tell)
+        return told
 
 
-def _timed(sent: float, seconds: float, call: Callable[[], Any]) -> Any:
-    def stop(_: int, __: FrameType | None) -> None:
-        _clock.over = True
-        _clock.check()
-
+def _timed(sent: float, seconds: float, grace: float, call: Callable[[], Any]) -> Any:
     _clock.sent, _clock.over = sent, False
-    signal.signal(signal.SIGALRM, stop)
-    try:
+    left = max(seconds - (time.time() - sent), 1e-3)
+    alarm = threading.Timer(left, _clock.ring)
+    alarm.daemon = True
+    before = signal.signal(signal.SIGINT, _clock.stop)
+    with open(os.devnull, "w", encoding="ascii") as nowhere:
+        faulthandler.dump_traceback_later(left + grace, exit=True, file=nowhere)  # whatever the main thread is at
         try:
-            signal.setitimer(signal.ITIMER_REAL, max(seconds - (time.time() - sent), 1e-3))
-            return call()
+            try:
+                alarm.start()
+                return call()
+            finally:
+                alarm.cancel()
+                alarm.join()
+        except OutOfTimeError:  # before or after all that ``measure`` watches over: a budget may end at once
+            cpu, wall = time.process_time(), time.time() - sent
+            return Measurement(status=STOPPED, message=NO_TIME, cpu=cpu, wall=wall, memory=peak_memory())
         finally:
-            signal.setitimer(signal.ITIMER_REAL, 0.0)
-    except OutOfTimeError:  # before or after all that ``measure`` watches over: a budget may end at once
-        cpu, wall = time.process_time(), time.time() - sent
-        return Measurement(status=STOPPED, message=NO_TIME, cpu=cpu, wall=wall, memory=peak_memory())
-    finally:
-        _clock.sent, _clock.over = math.nan, False
+            _clock.sent = math.nan
+            faulthandler.cancel_dump_traceback_later()
+            signal.signal(signal.SIGINT, before)  # which first lets an interruption that is still to come have its way
+            _clock.over = False
 
 
 @dataclass(frozen=True)
@@ -125,7 +163,7 @@ def _wear(scene: Scene, progress: _Progress, sent: float) -> Measurement:
         progress.done = state.strokes / max(scene.program.strokes, 1)
 
     result = run(scene, throw=False, figures=False, on_step=on_step)
-    values = wear_values(scene, result.summary, result.recorder.rows) if result.error is None else {}
+    values = wear_values(scene, result.summary, result.records.rows) if result.error is None else {}
     solves = result.summary.get("solves", 0)
     return Measurement(status=result.status, message=result.message, values=values, solves=solves)
 

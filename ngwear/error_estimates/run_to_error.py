@@ -20,18 +20,29 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ngwear.error_estimates.coarser_runs import COARSER, COARSEST, FILE, coarser, leave, left_by, left_of, run_stated
+from ngwear.error_estimates.coarser_runs import (
+    COARSER,
+    COARSEST,
+    FILE,
+    coarser,
+    excess,
+    leave,
+    left_by,
+    left_of,
+    run_stated,
+)
 from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, COMPLETED, OutFolder
-from ngwear.loop.run import Result
+from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
-from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH
+from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, PEAK
 from ngwear.results.recorder import fingerprint
 from ngwear.scene.accuracy import MOST_ACROSS
 from ngwear.scene.scene import Scene
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
-FIRST, AT = 4.0, 0.01  # elements across of the first level when so much error is asked for
+FIRST, AT = 4.0, 0.01  # elements across of the first level when so much error of the depth is asked for
+FIRST_PEAK, AT_PEAK = 6.0, 0.1  # when so much of the peak pressure is
 COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
 HALVINGS, MOST_PARTS = 2, 16  # of the time step at once; parts of a stroke
@@ -40,9 +51,15 @@ Level = tuple[float, int]  # elements across, parts of a stroke
 BY_TIME = f"{DEPTH[:-4]} {BY_TIME_STEP}"
 
 
-def first_across(error: float) -> float:
-    """Elements across the contacts to begin with: 4 for 1 %, twice as many for half of it, from 2.5 to 32."""
-    return min(max(FIRST * 2.0 ** math.ceil(math.log2(AT / error) - 1e-9), COARSEST_FIRST), FINEST_FIRST)
+def first_across(error: float, peak_error: float | None = None) -> float:
+    """Elements across the contacts to begin with: 4 for 1 % of depth, 6 for 10 % of peak pressure, from 2.5 to 32.
+
+    Twice as many for half of the error.
+    """
+    across = FIRST * 2.0 ** math.ceil(math.log2(AT / error) - 1e-9)
+    if peak_error is not None:
+        across = max(across, FIRST_PEAK * 2.0 ** math.ceil(math.log2(AT_PEAK / peak_error) - 1e-9))
+    return min(max(across, COARSEST_FIRST), FINEST_FIRST)
 
 
 def next_across(across: float, stated: float | None, error: float) -> float | None:
@@ -65,16 +82,22 @@ def next_parts(parts: int, by_time_step: float, error: float) -> int:
     return max(parts, min(parts * 2**steps, MOST_PARTS))
 
 
-def next_level(level: Level, stated: float | None, by_time_step: float, error: float) -> Level | None:
-    """Elements across and parts of a stroke of the level after one; None if that does, or there is no finer one."""
+def next_level(
+    level: Level, stated: float | None, by_time_step: float, error: float, *, others: float = 0.0
+) -> Level | None:
+    """Elements across and parts of a stroke of the level after one; None if that does, or there is no finer one.
+
+    ``others`` is the largest of the other stated errors over what was asked for.
+    """
     across, parts = level
-    if stated is not None and stated <= error:
+    if stated is not None and stated <= error and others <= 1:
         return None
     if stated is None:
         finer = (next_across(across, None, error) or across, parts)
     else:
         left = error - min(by_time_step, 0.5 * error)
-        finer = (next_across(across, stated - by_time_step, left) or across, next_parts(parts, by_time_step, error))
+        by_mesh = max(stated - by_time_step, others * left)
+        finer = (next_across(across, by_mesh, left) or across, next_parts(parts, by_time_step, error))
     return None if finer == level else finer
 
 
@@ -85,34 +108,48 @@ def run_to_error(
     resume: bool = False,
     progress: bool = False,
     throw: bool = True,
+    figures: bool = True,
     worker: Worker | None = None,
 ) -> Result:
-    """Run a scene whose ``accuracy.error`` is given on as fine a level as that takes.
+    """Run a scene whose ``accuracy.error`` is given on as fine a level as that, and ``peak_error``, takes.
 
     Earlier levels stay in the folder's ``levels``. If the finest there is states more than was asked for, its summary
     warns. ``summary["levels"]`` tells each level's error and seconds.
 
     Parameters and errors as ``run``; the first level's companions run in ``worker``, if it is given.
     """
-    folder, error = OutFolder(Path(out), CHECKPOINT, resume=resume), scene.accuracy.error
+    folder, asked = OutFolder(Path(out), CHECKPOINT, resume=resume), asked_for(scene)
     done = _earlier(folder, scene, resume=resume)
-    at = (first_across(error), scene.accuracy.parts)
-    if done:
-        at = _after(done[-1], error)
+    first = (first_across(asked[DEPTH], asked.get(PEAK)), scene.accuracy.parts)
+    at = (_after(done[-1], asked) if done else None) or first
     while True:
         level = at_level(scene, *at)
         _hand_down(folder, level, done)
-        told = _Told(done, at, error)
-        how = {"resume": resume, "progress": progress, "throw": throw, "told": told}
-        result, worker = run_stated(level, out=out, enough=error, worker=worker, **how), None
-        finer = _after(told.mine, error) if result.status == COMPLETED else None
+        told = _Told(done, at, asked)
+        result = run_stated(
+            level,
+            out=out,
+            resume=resume,
+            progress=progress,
+            throw=throw,
+            figures=figures,
+            told=told,
+            enough=asked,
+            worker=worker,
+        )
+        worker = None
+        finer = _after(told.mine, asked) if result.status == COMPLETED else None
         if finer is None:
             return result
         done.append(told.mine | {"left": left_of(result)})
-        notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
-        folder.replace(NOTES, lambda file, notes=notes: file.write(notes))
+        _note(folder, scene, done)
         _put_away(folder, told.mine)
         at = finer
+
+
+def _note(folder: OutFolder, scene: Scene, done: list[dict[str, Any]]) -> None:
+    notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
+    folder.replace(NOTES, lambda file: file.write(notes))
 
 
 def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:
@@ -120,15 +157,24 @@ def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy.with_across(across), parts=parts))
 
 
-def _after(done: Mapping[str, Any], error: float) -> Level | None:
-    return next_level((done[ACROSS], done[PARTS]), done[DEPTH], done[BY_TIME], error)
+def asked_for(scene: Scene) -> dict[str, float]:
+    """Errors that a scene asks for, by their names in the summary."""
+    accuracy = scene.accuracy
+    asked = {DEPTH: accuracy.error, PEAK: accuracy.peak_error}
+    return {name: error for name, error in asked.items() if error is not None}
+
+
+def _after(done: Mapping[str, Any], asked: Mapping[str, float]) -> Level | None:
+    others = {name: limit for name, limit in asked.items() if name != DEPTH}
+    over = excess({name: done[name] for name in others if done.get(name) is not None}, others)
+    return next_level((done[ACROSS], done[PARTS]), done[DEPTH], done[BY_TIME], asked[DEPTH], others=over)
 
 
 class _Told:
     """What a level's summary tells of what was asked for, and of all levels."""
 
-    def __init__(self, done: list[dict[str, Any]], level: Level, error: float) -> None:
-        self.done, self.level, self.error = done, level, error
+    def __init__(self, done: list[dict[str, Any]], level: Level, asked: Mapping[str, float]) -> None:
+        self.done, self.level, self.asked = done, level, asked
         self.mine: dict[str, Any] = {}
 
     def __call__(self, summary: dict[str, Any]) -> None:
@@ -142,12 +188,23 @@ class _Told:
                 cpu += summary.get(f"CPU time of the {name} [s]", 0.0)
         self.mine = {ACROSS: across, PARTS: parts, DEPTH: stated[DEPTH] if known else None, CPU: round(cpu, 3)}
         self.mine[BY_TIME] = stated.get(BY_TIME, 0.0)
-        levels = [{name: entry[name] for name in (ACROSS, PARTS, DEPTH, CPU)} for entry in (*self.done, self.mine)]
-        summary["error asked for [-]"], summary["levels"] = self.error, levels
+        if PEAK in self.asked:
+            self.mine[PEAK] = stated.get(PEAK)
+        told = (ACROSS, PARTS, *self.asked, CPU)
+        levels = [{name: entry[name] for name in told} for entry in (*self.done, self.mine)]
+        summary["error asked for [-]"], summary["levels"] = self.asked[DEPTH], levels
+        if PEAK in self.asked:
+            summary["peak error asked for [-]"] = self.asked[PEAK]
         summary["CPU time of all levels [s]"] = round(sum(entry[CPU] for entry in levels), 3)
-        if not (known and stated[DEPTH] <= self.error) and _after(self.mine, self.error) is None:
-            says = f"states an error of {stated[DEPTH]:.2g}" if known else "does not know its error"
-            summary["warnings"].append(f"the finest level {says}; {self.error:.2g} was asked for")
+        if _after(self.mine, self.asked) is not None:
+            return
+        for name, limit in self.asked.items():
+            if known and name in stated and stated[name] > limit:
+                says = f"states an error of the {name[:-4]} of {stated[name]:.2g}"
+                summary["warnings"].append(f"the finest level {says}; {limit:.2g} was asked for")
+        if not known:
+            says = f"does not know its error; {self.asked[DEPTH]:.2g} of the {DEPTH[:-4]} was asked for"
+            summary["warnings"].append(f"the finest level {says}")
 
 
 def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:

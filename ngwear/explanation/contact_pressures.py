@@ -102,10 +102,11 @@ def press(scene: Scene, stage: Stage | None = None, *, on_mount: Callable[[float
 
 def _plain(scene: Scene) -> Scene:
     """The scene without elements that may be lost, on a coarser mesh."""
-    accuracy = scene.accuracy
-    edge = COARSER * accuracy.patch
-    coarse = replace(accuracy, patch=edge, mounting=max(edge, accuracy.mounting), coarse=max(edge, accuracy.coarse))
-    return replace(scene, deactivation=None, accuracy=coarse)
+    lengths = scene.accuracy.lengths
+    edge = COARSER * lengths.patch
+    mounting, coarse = max(edge, lengths.mounting), max(edge, lengths.coarse)
+    accuracy = replace(scene.accuracy, patch=edge, mounting=mounting, coarse=coarse)
+    return replace(scene, deactivation=None, accuracy=accuracy)
 
 
 def _kinds(scene: Scene) -> list[Stroke]:
@@ -132,7 +133,6 @@ def history_points(stage: Stage, states: Sequence[Array]) -> int:
 
     The run refines once more, where stresses on the fine mesh ask for it.
     """
-    body = stage.body
-    if states:
-        body = Body(body.contour, wanted_size(stage, list(states), reach=MAY_COME))
-    return POINTS * body.mesh.ne
+    if not states:
+        return POINTS * stage.body.mesh.ne
+    return POINTS * Body(stage.body.contour, wanted_size(stage, list(states), reach=MAY_COME)).mesh.ne

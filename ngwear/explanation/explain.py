@@ -1,36 +1,50 @@
-"""What a scene simulates and what that takes, what it leaves out, and the numbers that tell whether that matters."""
+"""One verb: say what a scene simulates, what it leaves out, and whether that matters."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any
+import json
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
 
 from ngwear.explanation.assumptions import Assumed
-from ngwear.laws import Constant
-from ngwear.loop.element_sizes import chosen, laid_out
-from ngwear.loop.law_changes import friction_range
-from ngwear.scene.contact import Contact
-from ngwear.scene.deactivation import Deactivation
+from ngwear.explanation.text import lines
+from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
-from ngwear.wear.archard import critical_distance
 
-if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
-    from ngwear.equilibrium.problem import Problem
-    from ngwear.explanation.contact_pressures import Pressing
-    from ngwear.loop.stage import Stage
+
+class Explanation(Mapping[str, Any]):
+    """A description of a scene by its parts, as ``ngwear explain --json`` prints it; printed, that command's text."""
+
+    def __init__(self, found: Mapping[str, Any]) -> None:
+        self._found = found
+
+    def __getitem__(self, name: str) -> Any:
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._found)
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __str__(self) -> str:
+        return "\n".join(lines(self))
+
+    @property
+    def json(self) -> str:
+        """The description as text in JSON."""
+        return json.dumps(dict(self), indent=2)
 
 
 def explain(
-    scene: Scene, *, assumed: Assumed | None = None, on_mount: Callable[[float], None] | None = None
-) -> dict[str, Any]:
-    """Describe a scene: each effect and what it brings, the solver, and each effect that is left out and its numbers.
-
-    The part is mounted once on a coarse mesh for its contact pressures; no memory, no wear.
+    scene: Scene | PinScene, *, assumed: Assumed | None = None, on_mount: Callable[[float], None] | None = None
+) -> Explanation:
+    """Describe a scene: each effect and what it brings; each that is left out, with the numbers that judge it.
 
     Parameters
     ----------
-    scene : Scene
+    scene : Scene or PinScene
+        A scene of wear is mounted once on a coarse mesh for its contact pressures.
     assumed : Assumed or None
         Constants that the scene does not give.
     on_mount : callable or None
@@ -41,175 +55,10 @@ def explain(
     MeshError
         If the section cannot be meshed.
     """
-    from ngwear.explanation.contact_pressures import press
-    from ngwear.explanation.effect_costs import costs
-    from ngwear.explanation.neglected_effects import left_out
-    from ngwear.loop.mounting import unworn_body
-    from ngwear.loop.stage import Stage
+    if isinstance(scene, PinScene):
+        from ngwear.explanation.explain_pin import explain_pin
 
-    assumed, across = assumed or Assumed(), scene.accuracy.across
-    scene = laid_out(scene)
-    stage = Stage(scene, unworn_body(scene, across))
-    problem, material = stage.problem, scene.part.material
-    brought = costs(problem, _owners(scene, problem.names))
-    pressing = press(scene, stage, on_mount=on_mount)
-    if across is not None and pressing.states:
-        scene = chosen(stage, list(pressing.states), across)
-    absent = left_out(scene, pressing, remembers=stage.remembers, assumed=assumed)
-    present = _present(scene)
-    rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
-    critical = critical_distance(scene.accuracy.patch, rate, material.plane_strain_modulus)
-    return {
-        "scene": scene.name,
-        "kind": "axisymmetric" if scene.axisymmetric else "plane strain",
-        "effects": present,
-        "left out": list(absent),
-        "unknowns on the mounting mesh": {
-            name: problem.part(name).stop - problem.part(name).start for name in problem.names
-        },
-        "unknowns": {name: brought.unknowns.get(name, 0) for name in present},
-        "matrix entries": {name: brought.entries.get(name, 0) for name in present},
-        "memory [MB]": {name: brought.memory.get(name, 0.0) for name in present} | _kept(scene, stage, pressing),
-        "solver": solver_in_words(problem, _unsymmetric(scene)),
-        "numbers": {
-            "element edge in the contact [mm]": scene.accuracy.patch,
-            "K/G [-]": material.bulk_modulus / material.shear_modulus,
-            "highest sealed pressure / G [-]": max(s.pressure for s in scene.program.cycle) / material.shear_modulus,
-            "longest stroke / critical explicit wear distance [-]": max(s.travel for s in scene.program.cycle)
-            / critical,
-            **_memory_numbers(scene),
-        },
-        **({"arms of the memory": _arms(scene)} if scene.part.prony is not None else {}),
-        "absent": {name: verdict.as_dict() for name, verdict in absent.items()},
-        "assumed": assumed.told(),
-    }
+        return Explanation(explain_pin(scene, assumed=assumed))
+    from ngwear.explanation.explain_wear import explain_wear
 
-
-def _present(scene: Scene) -> dict[str, str]:
-    """Each effect that the scene has, in words."""
-    present = {"hyperelasticity": type(scene.part.material).__name__}
-    present |= {f"contact '{c.name}'": f"edges {', '.join(c.edges)}" for c in scene.contacts}
-    present |= {f"friction at '{c.name}'": _friction_in_words(scene, c) for c in scene.contacts if c.friction_law}
-    if scene.fluid is not None:
-        present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
-        if not any(stroke.pressure for stroke in scene.program.cycle):
-            present["fluid pressure"] += "; no stroke has a pressure: without [fluid] the result is the same, for less"
-    if scene.worn_edges:
-        laws = [c.wear_law.words if c.wear_law else "Archard" for c in scene.contacts if c.wears]
-        how = f"{scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
-        present["wear"] = f"{' / '.join(dict.fromkeys(laws))}, {how}"
-    if scene.deactivation is not None:
-        present["elements that may be lost"] = _deactivation_in_words(scene.deactivation)
-    present |= {f"wear rate at '{c.name}'": _wear_in_words(scene, c) for c in scene.contacts if c.wear_rate.varies}
-    present |= {
-        f"wear of the surface of '{c.name}'": f"k = {c.counter_wear_rate:g} mm²/N, a profile that moves with it"
-        for c in scene.contacts
-        if c.counter_wear_rate > 0
-    }
-    if scene.part.prony is not None:
-        present["memory"] = _memory_in_words(scene)
-    return present
-
-
-def _owners(scene: Scene, names: Sequence[str]) -> dict[str, str]:
-    """The effect that brings each unknown."""
-    owners = dict.fromkeys(names, "hyperelasticity")
-    for c in scene.contacts:
-        owners |= {
-            name: f"contact '{c.name}'" for name in (f"{c.name} pressure", f"{c.name} approach") if name in names
-        }
-    for c in scene.contacts:
-        owners |= {name: f"friction at '{c.name}'" for name in names if name.startswith(f"{c.name} traction ")}
-    return owners
-
-
-def _unsymmetric(scene: Scene) -> list[str]:
-    """Effects whose tangent is not symmetric."""
-    found = [f"friction at '{c.name}'" for c in scene.contacts if c.friction_law is not None]
-    return found + ["fluid pressure"] * (scene.fluid is not None)
-
-
-def solver_in_words(problem: Problem, unsymmetric: Sequence[str]) -> str:
-    """Which direct solver a problem takes, and why."""
-    from ngwear.equilibrium.linear import has_pardiso
-
-    if problem.symmetric:
-        return f"LDLT, {'pardiso' if has_pardiso() else 'sparsecholesky'} (symmetric terms only)"
-    name = "pardiso" if has_pardiso() else "umfpack"
-    return f"LU, {name} (unsymmetric: {', '.join(unsymmetric)}; without, LDLT would keep half the factors)"
-
-
-def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
-    """Memory of what effects keep from step to step [MB], without their share of the matrix."""
-    from ngwear.explanation.contact_pressures import history_points
-    from ngwear.explanation.effect_costs import MEGABYTE
-
-    strokes, outline = len(scene.program.cycle), len(stage.body.contour)
-    found = {}
-    if scene.worn_edges:  # area over way, twice, and depth, of each contact and stroke; rates of the states
-        sizes = 3 * strokes * len(scene.contacts) * outline + strokes * stage.problem.space.ndof
-        found["wear"] = 8 * sizes / MEGABYTE
-    if scene.part.prony is not None:
-        points = history_points(stage, pressing.states) if scene.arms is not None else 0
-        found["memory"] = 8 * 4 * points * (len(scene.folding.kept.times) + strokes) / MEGABYTE
-    return found
-
-
-def _deactivation_in_words(deactivation: Deactivation) -> str:
-    distortion, damage, reach = deactivation.distortion, deactivation.damage, deactivation.reach
-    told = [f"layers {deactivation.depth:g} mm deep; surface nodes wear through them"]
-    if distortion is not None:
-        told.append(f"distorted beyond a corner cosine of {distortion.corner_cosine:g}")
-    if damage is not None:
-        where = "" if reach is None else f" within {reach:g} mm of the contact"
-        over = "" if damage.length is None else f", averaged over {damage.length:g} mm,"
-        told.append(f"torn where the {damage.name}{over} exceeds {damage.critical:g}{where}")
-    return "; ".join(told)
-
-
-def _friction_in_words(scene: Scene, contact: Contact) -> str:
-    law = contact.friction_law
-    words = f"{'stick and slip' if scene.may_stick(contact) else 'full sliding'}, {law.words}"
-    if not isinstance(law, Constant):
-        low, high = friction_range(scene, contact)
-        met = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-        words += f"; the scene meets mu = {met}" + (" at p = 0" if law.depends_on_pressure else "")
-    return f"{words}: {scene.why_it_may_stick(contact)}"
-
-
-def _wear_in_words(scene: Scene, contact: Contact) -> str:
-    rate, end = contact.wear_rate, scene.program.slid(scene.program.strokes)
-    low, high = rate.curve.extremes(0.0, end)
-    return f"by lubrication, {len(rate.distance)} rows; the scene meets k = {low:g} to {high:g} mm²/N"
-
-
-def _memory_in_words(scene: Scene) -> str:
-    folding = scene.folding
-    kept, fast, slow = len(folding.kept.times), len(folding.fast), len(folding.slow)
-    rest = scene.program.rest
-    before = f"mounted {rest:g} s before" if math.isfinite(rest) else "mounted and relaxed before"
-    return f"{kept} arms kept; {fast} folded to nothing, {slow} into the elastic part; {before}"
-
-
-def _memory_numbers(scene: Scene) -> dict[str, float]:
-    if scene.part.prony is None:
-        return {}
-    folding, step = scene.folding, min(stroke.duration for stroke in scene.program.cycle)
-    return {
-        "G0/G of the arms kept [-]": folding.kept.instantaneous,
-        "elastic part over long-term stiffness [-]": folding.stiffening,
-        "largest error of stress by folding [-]": folding.bound,
-        "shortest stroke [s]": scene.program.parts * step,
-        "shortest time step [s]": step,
-        "all strokes [s]": scene.program.duration,
-    }
-
-
-def _arms(scene: Scene) -> dict[str, str]:
-    """Each arm: what becomes of it, its stiffness, and Deborah's number of every kind of stroke."""
-    folding = scene.folding
-    told = {}
-    for time, ratio in zip(scene.part.prony.times, scene.part.prony.ratios, strict=True):
-        deborah = {f"{time / stroke.duration:.3g}": None for stroke in scene.program.cycle}
-        told[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {folding.fate(time)}"
-    return told
+    return Explanation(explain_wear(scene, assumed=assumed, on_mount=on_mount))

@@ -20,12 +20,12 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
         Constants that the scene does not give.
     """
     from ngwear.explanation.effect_costs import MEGABYTE, costs
-    from ngwear.explanation.explain import solver_in_words
+    from ngwear.explanation.explain_wear import solver_in_words
     from ngwear.sliding.pin import PinStage, coarsened
 
     pin, assumed = scene.pin, assumed or Assumed()
     stage = PinStage(pin, coarsened(scene.mesh), (0.0, 0.0, pin.contact_radius))
-    problem, material, series = stage.problem, pin.material, pin.series
+    problem, material, series = stage.problem, pin.material, pin.arms
     rates = [speed / pin.contact_radius for speed in (min(scene.speeds), max(scene.speeds))]
     slow, fast = (rate / (2 * math.pi) for rate in rates)
     foldings = [scene.mesh.folding(series, speed) for speed in (min(scene.speeds), max(scene.speeds))]
@@ -40,7 +40,8 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
     owners = {name: "contact" if name.startswith("pin ") else "hyperelasticity" for name in problem.names}
     brought = costs(problem, owners)
     memory = dict.fromkeys(effects, 0.0) | brought.memory
-    memory["memory"] = stage.memory.nbytes / MEGABYTE
+    if stage.memory is not None:
+        memory["memory"] = stage.memory.nbytes / MEGABYTE
     absent = left_out(scene, assumed)
     turn = 2 * math.pi * pin.track_radius
     return {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 from ngwear.explanation import adhesion, film, heat, inertia, relaxation
 from ngwear.explanation.assumptions import Assumed
@@ -120,18 +121,18 @@ def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
         mu = friction_range(scene, group[0].contact)[1]
         return sum(heat.band_rise(mu * s.pressure * speed, s.width / 2, speed, **into) for s in group)
 
-    starts = min(onset(lambda v, g=group: rise(g, v), heat.LIMIT, low=1e-3, high=1e7) for group in groups.values())
+    starts = min(onset(partial(rise, group), heat.LIMIT, low=1e-3, high=1e7) for group in groups.values())
     numbers = {"speed from which the flash temperature exceeds 10 K [mm/s]": starts}
     grounds = (
         "each strip a band of uniform heat mu p v that moves over the counter-surface, which takes all of it (Jaeger; "
         f"rubber conducts {assumed.counter_conductivity / assumed.rubber_conductivity:.3g} times less)"
     )
-    moving = [group for group in groups.values() if group[0].stroke.speed is not None]
+    moving = [(group, speed) for group in groups.values() if (speed := group[0].stroke.speed) is not None]
     if not moving:
         words = f"{UNSAID}; the flash temperature exceeds {heat.LIMIT:g} K from {starts:.3g} mm/s on: {grounds}"
         return Verdict(words=words, matters=None, numbers=_finite(numbers))
-    hottest = max(moving, key=lambda group: rise(group, group[0].stroke.speed))
-    strip, speed = _main(hottest), hottest[0].stroke.speed
+    hottest, speed = max(moving, key=lambda pair: rise(*pair))
+    strip = _main(hottest)
     found, mu = rise(hottest, speed), friction_range(scene, strip.contact)[1]
     power, unit = _power(scene, moving)
     numbers |= {
@@ -158,12 +159,12 @@ def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     return Verdict(words=words, matters=matters, numbers=_finite(numbers))
 
 
-def _power(scene: Scene, groups: list[list[Strip]]) -> tuple[float, str]:
-    """Highest frictional power of a contact in a stroke, and its unit."""
+def _power(scene: Scene, groups: list[tuple[list[Strip], float]]) -> tuple[float, str]:
+    """Highest frictional power of a contact in a stroke, and its unit; of strips and their speeds."""
     powers = []
-    for group in groups:
+    for group, speed in groups:
         load = sum(s.load * (2 * math.pi * s.place[1] if scene.axisymmetric else 1.0) for s in group)
-        powers.append(1e-3 * friction_range(scene, group[0].contact)[1] * load * group[0].stroke.speed)
+        powers.append(1e-3 * friction_range(scene, group[0].contact)[1] * load * speed)
     return max(powers), "W" if scene.axisymmetric else "W/mm"
 
 

@@ -49,13 +49,13 @@ def warming(scene: Scene, strips: list[Strip], assumed: Assumed) -> float:
 
 def rubbed(scene: Scene, strips: list[Strip]) -> float:
     """Frictional heat of one contact over the program [mJ, or mJ/mm], its pressure as it is when new."""
-    program, total = scene.program, 0.0
+    program, law, total = scene.program, strips[0].contact.friction_law, 0.0
     end = program.slid(program.strokes)
     for stroke in program.cycle:
         same = (stroke.direction, stroke.pressure, stroke.speed)
         alike = [s for s in strips if (s.stroke.direction, s.stroke.pressure, s.stroke.speed) == same]
         load = sum(s.load * (2 * math.pi * s.place[1] if scene.axisymmetric else 1.0) for s in alike)
-        mu = strips[0].contact.friction_law.curve(stroke.speed).mean(0.0, end) if end > 0 else 0.0
+        mu = law.curve(stroke.speed).mean(0.0, end) if law is not None and end > 0 else 0.0
         total += mu * load * stroke.travel * program.strokes / len(program.cycle)
     return total
 

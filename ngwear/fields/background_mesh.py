@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +12,7 @@ from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.locator import Locator
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.body import Body
+from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 RULE = 6  # order of the integration rule: 12 points a triangle; with 6 points the fit is unstable
@@ -45,11 +48,14 @@ class Background:
         self.areas = np.array(rule.weights) * np.abs(np.linalg.det(jacobian))
         self._fit = np.linalg.pinv(_quadratic(*np.array(rule.points)[:, :2].T))
 
-    def __getstate__(self) -> dict[str, Body]:
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same background of, to the last bit."""
         return {"body": self.body}
 
-    def __setstate__(self, saved: dict[str, Body]) -> None:
-        self.__init__(**saved)
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> Background:
+        """The background again."""
+        return cls(data["body"])
 
     def fitted(self, values: Array) -> Array:
         """Coefficients of the quadratic in each element, by least squares; shape (elements, 6, k)."""
@@ -62,7 +68,7 @@ class Seat:
     Parameters
     ----------
     background : Background
-    body : Body
+    body : Meshed
     kinematics : Kinematics
     points : MaterialPoints
         Of the body.
@@ -74,7 +80,7 @@ class Seat:
         self,
         background: Background,
         *,
-        body: Body,
+        body: Meshed,
         kinematics: Kinematics,
         points: MaterialPoints,
         displacement: ng.GridFunction,

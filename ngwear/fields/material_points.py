@@ -120,6 +120,14 @@ class MaterialPoints:
 
         Its unknowns are fitted to the values of each element, and averaged between elements.
         """
+        unknowns, shapes, _ = self._smooth
+        return shapes @ self._recovered_unknowns(values)[unknowns]
+
+    def recovered_at_vertices(self, values: Array) -> Array:
+        """The same at the mesh's vertices, shape (vertices, k)."""
+        return self._recovered_unknowns(values)[: self.body.mesh.nv]
+
+    def _recovered_unknowns(self, values: Array) -> Array:
         unknowns, shapes, fit = self._smooth
         fitted = fit @ values
         area = self._sizes.sum(axis=1)[:, None] * shapes.any(axis=1)  # of the element, at each of its unknowns
@@ -127,7 +135,7 @@ class MaterialPoints:
         weight = np.bincount(unknowns.ravel(), area.ravel(), minlength=len(total))
         for k in range(values.shape[-1]):
             total[:, k] = np.bincount(unknowns.ravel(), (fitted[..., k] * area).ravel(), minlength=len(total))
-        return shapes @ (total / weight[:, None])[unknowns]
+        return total / weight[:, None]
 
     @cached_property
     def _smooth(self) -> tuple[Index, Array, Array]:

@@ -8,6 +8,7 @@ array over all points; small matrix products element by element take several tim
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -64,16 +65,15 @@ class ReferenceElements:
         """Give the inverse of the Jacobian, shape (elements, points, dim, dim), the points' volumes and radii [mm]."""
         self._inverse = np.ascontiguousarray(np.moveaxis(inverse, (2, 3), (0, 1)))
         self._volumes, self._weighted = volumes, volumes * self._inverse
-        self._round = self._weighted_round = None
-        if self._hoop:
+        self._round = self._weighted_round = np.empty(0)  # of no use without a hoop strain
+        if radius is not None:
             self._round = 1 / radius
             self._weighted_round = volumes / radius
 
     @property
     def nbytes(self) -> int:
         """Memory of what is kept at the points [bytes]."""
-        round_ = 0 if self._round is None else 2 * self._round.nbytes
-        return self._inverse.nbytes + self._weighted.nbytes + round_
+        return self._inverse.nbytes + self._weighted.nbytes + 2 * self._round.nbytes
 
     def strain(self, unknowns: Array) -> Array:
         """B times unknowns of shape (elements, unknowns); shape (elements, points, strains), components apart."""
@@ -110,9 +110,9 @@ class ReferenceElements:
         out = np.empty((self._shape[0], self._places[-1].stop, self._places[-1].stop))
         for f, mine in enumerate(self._places):
             for g, other in enumerate(self._places[f:], f):
-                right = {a: self._pulled(g, lambda b, a=a: tangent[..., a, b]) for a in self._components(f)}
+                right = {a: self._pulled(g, partial(_entry, tangent, a)) for a in self._components(f)}
                 columns = [
-                    np.stack(self._pulled(f, lambda a, s=s, right=right: right[a][s], weighted=True), axis=-1)
+                    np.stack(self._pulled(f, partial(_one, right, s), weighted=True), axis=-1)
                     for s in range(len(next(iter(right.values()))))
                 ]
                 entries = np.stack(columns, axis=-1)
@@ -142,6 +142,14 @@ class ReferenceElements:
         if self._hoop and field == 1:
             rows.append((self._weighted_round if weighted else self._round) * entry(dim * dim))
         return rows
+
+
+def _entry(tangent: Array, a: int, b: int) -> Array:
+    return tangent[..., a, b]
+
+
+def _one(rows: dict[int, list[Array]], row: int, a: int) -> Array:
+    return rows[a][row]
 
 
 def _products(fields: list[Array]) -> dict[tuple[int, int], Array]:

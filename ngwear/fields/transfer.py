@@ -26,10 +26,11 @@ class PointSearch:
         active = mesh.deformation
         mesh.UnsetDeformation()
         place = np.array(points, dtype=float)
-        for _ in range(3 if deformation is not None else 0):
-            self.mapped = nearest_places(mesh, place)
-            moved = np.asarray(deformation(self.mapped))
-            place = points - moved
+        if deformation is not None:
+            for _ in range(3):
+                self.mapped = nearest_places(mesh, place)
+                moved = np.asarray(deformation(self.mapped))
+                place = points - moved
         self.mapped = nearest_places(mesh, place)
         if active is not None:
             mesh.SetDeformation(active)

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import csv
 import io
+import json
 import os
-import resource
-import tempfile
+import secrets
 from collections.abc import Callable
 from pathlib import Path
 from typing import IO, Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from ngwear.errors import ResultError
+from ngwear.files.subnormal import without_subnormals
+from ngwear.files.version import VERSION
 
-SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.pkl"
+SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.npz"
+OLD_CHECKPOINT = "checkpoint.pkl"  # of ngwear 0.1: a file that can run any program, which is not read any more
 COMPLETED, GAVE_UP = "completed", "gave up"
 
 
@@ -34,13 +34,18 @@ class OutFolder:
     Raises
     ------
     ResultError
-        If the folder holds another run, cannot be written, or the disk is full.
+        If the folder holds another run, or one of an older ngwear, cannot be written, or the disk is full.
     """
 
     def __init__(self, path: Path, begun: str, *, resume: bool) -> None:
         self.path = Path(path)
         if self.path.exists() and not self.path.is_dir():
             raise ResultError(f"{self.path} is a file; give a folder for the results")
+        if begun == CHECKPOINT and (self.path / OLD_CHECKPOINT).exists():
+            raise ResultError(
+                f"{self.path} holds a run of ngwear 0.1 ({OLD_CHECKPOINT}); this is ngwear {VERSION}, which cannot "
+                "go on with it: run the scene anew in another folder, or finish it with ngwear 0.1"
+            )
         if not resume and (self.path / begun).exists():
             raise ResultError(f"{self.path} already holds a run: go on with --resume, or give another folder")
         try:
@@ -52,17 +57,17 @@ class OutFolder:
 
     def replace(self, name: str, write: Callable[[IO[bytes]], Any]) -> None:
         """Write a file beside the old one, then put it in its place."""
+        temporary = self.path / f".{name}.{secrets.token_hex(4)}"
         try:
-            with tempfile.NamedTemporaryFile(dir=self.path, prefix=f".{name}.", delete=False) as file:
-                temporary = Path(file.name)
-                try:
+            try:
+                with temporary.open("x+b") as file:
                     write(file)
                     file.flush()
                     os.fsync(file.fileno())
-                except BaseException:
-                    temporary.unlink(missing_ok=True)
-                    raise
-            temporary.replace(self.path / name)
+                temporary.replace(self.path / name)
+            except BaseException:
+                temporary.unlink(missing_ok=True)
+                raise
         except OSError as error:
             raise ResultError(
                 f"{self.path / name} cannot be written: {error.strerror or error}; the last saved state is kept: "
@@ -71,48 +76,24 @@ class OutFolder:
 
     def write_series(self, rows: list[dict[str, Any]]) -> None:
         """One line a row, columns named ``"quantity [unit]"``."""
+        self.write_table(SERIES, rows)
+
+    def write_table(self, name: str, rows: list[dict[str, Any]]) -> None:
+        """One line a row, with the keys of the first one as columns."""
         text = io.StringIO()
         if rows:
             writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
             writer.writeheader()
-            writer.writerows(rows)
-        self.replace(SERIES, lambda file: file.write(text.getvalue().encode()))
+            writer.writerows(without_subnormals(row) for row in rows)
+        self.replace(name, lambda file: file.write(text.getvalue().encode()))
+
+    def write_json(self, name: str, content: Any) -> None:
+        """Numbers, text, lists and dicts as JSON."""
+        text = json.dumps(without_subnormals(content), indent=2) + "\n"
+        self.replace(name, lambda file: file.write(text.encode()))
 
     def clear(self) -> None:
         """Clear away what a kill has left half-written."""
         for left in self.path.glob(".*.*"):
             if left.name.startswith(tuple(f".{name}." for name in (SERIES, FIELDS, SUMMARY, CHECKPOINT))):
                 left.unlink(missing_ok=True)
-
-
-def peak_memory() -> float:
-    """Peak resident memory of this process [MB]; on Linux its own, without what the one before it has left."""
-    status = Path("/proc/self/status")
-    if status.exists():
-        own = [line.split()[1] for line in status.read_text().splitlines() if line.startswith("VmHWM:")]
-        if own:
-            return int(own[0]) / 1024
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-
-
-def put_series(h5: Any, rows: list[dict[str, Any]]) -> None:
-    """Write the columns of ``series.csv`` into an open HDF5 file."""
-    import h5py
-
-    group = h5.create_group("series")
-    for column in rows[0] if rows else ():
-        values = [row[column] for row in rows]
-        group[column] = np.array(values, dtype=h5py.string_dtype()) if isinstance(values[0], str) else values
-
-
-def get_series(h5: Any) -> dict[str, NDArray[Any]]:
-    """The columns again. One such as "force x [N/mm]" holds a slash, which HDF5 reads as a path."""
-    series: dict[str, NDArray[Any]] = {}
-
-    def take(name: str, item: Any) -> None:
-        if hasattr(item, "dtype"):
-            values = item[()]
-            series[name] = values.astype(str) if values.dtype.kind in "OS" else values
-
-    h5["series"].visititems(take)
-    return series

@@ -2,52 +2,25 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import MeshError
-from ngwear.geometry import nodal, section
+from ngwear.geometry import nodal, saved_mesh, section
 from ngwear.geometry.harmonic import HarmonicFill
-from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.meshed_section import BoundaryEdges, MeshedSection
 from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 FINER = (1.0, 2.0, 4.0)  # how much less the outline may turn along an element edge: a curved one cuts its corner
 
 
-@dataclass(frozen=True)
-class BoundaryEdges:
-    """The mesh's boundary edges in the order of the outline (counter-clockwise).
-
-    Attributes
-    ----------
-    element : array of int, shape (m,)
-        Boundary element numbers.
-    vertices : array of int, shape (m, 2)
-        Mesh vertices at start and end.
-    edge : array of int, shape (m,)
-        Mesh edge numbers.
-    t : array, shape (m, 2)
-        Outline parameters at start and end; the last one ends at n, the outline's number of points.
-    names : array of str, shape (m,)
-    """
-
-    element: NDArray[np.intp]
-    vertices: NDArray[np.intp]
-    edge: NDArray[np.intp]
-    t: Array
-    names: NDArray[np.str_]
-
-    def on(self, edges: tuple[str, ...]) -> NDArray[np.intp]:
-        """Return the positions of the boundary edges that carry one of the names."""
-        return np.flatnonzero(np.isin(self.names, edges))
-
-
-class Body(Meshed):
+class Body(MeshedSection):
     """A meshed section whose outline can move a little without a new mesh.
 
     ``base`` is the outline that was meshed, ``contour`` the present one: it has the same points,
@@ -71,29 +44,34 @@ class Body(Meshed):
     def __init__(self, contour: Outline, field: SizeField, *, on_chord: bool = False) -> None:
         self.field = field
         self.base = self.contour = fitted(contour, field, on_chord=on_chord)
-        self.mesh = _meshed(self.base, field)
+        self.mesh, self.nodes = _meshed(self.base, field)
         self._set_up()
 
     def _set_up(self) -> None:
         self.outline = _outline(self.mesh, self.base)
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=2))
 
-    def __getstate__(self) -> dict[str, object]:
-        moved = self.deformation.vec.FV().NumPy().copy()
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same body of, to the last bit."""
         return {
             "field": self.field,
             "base": self.base,
             "contour": self.contour,
-            "mesh": self.mesh,
-            "deformation": moved,
+            "nodes": self.nodes,
+            "mesh": saved_mesh.as_arrays(self.mesh),
+            "deformation": self.deformation.vec.FV().NumPy().copy(),
         }
 
-    def __setstate__(self, saved: dict[str, object]) -> None:
-        moved = saved.pop("deformation")
-        self.__dict__.update(saved)
-        self._set_up()
-        self.deformation.vec.FV().NumPy()[:] = moved  # as it was, to the last bit
-        self._deform()
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> Body:
+        """The body again; its mesh is not made anew."""
+        body = cls.__new__(cls)
+        body.field, body.base, body.contour, body.nodes = (data[name] for name in ("field", "base", "contour", "nodes"))
+        body.mesh = saved_mesh.from_arrays(body.base, body.nodes, data["mesh"])
+        body._set_up()
+        body.deformation.vec.FV().NumPy()[:] = data["deformation"]
+        body._deform()
+        return body
 
     @cached_property
     def _extension(self) -> HarmonicFill:
@@ -106,13 +84,6 @@ class Body(Meshed):
         return HarmonicFill(matrix, np.fromiter(space.FreeDofs(), dtype=bool))
 
     def move_to(self, contour: Outline) -> None:
-        """Let the mesh follow to an outline that has the points of ``base``, displaced.
-
-        Raises
-        ------
-        MeshError
-            If an element would fold or be distorted beyond use; the body is left as it was.
-        """
         displacement = contour.points - self.base.points
         controls = self.base.controls(displacement)
         line, field = self.outline, self.deformation
@@ -144,18 +115,15 @@ class Body(Meshed):
         self._deform()
         return lowest
 
-    @property
-    def size(self) -> float:
-        return float(np.ptp(self.contour.points, axis=0).max())
 
-
-def _meshed(contour: Outline, field: SizeField) -> ng.Mesh:
-    """Mesh an outline, with shorter edges where it turns until the mesh passes its gates, or none does."""
+def _meshed(contour: Outline, field: SizeField) -> tuple[ng.Mesh, NDArray[np.intp]]:
+    """Mesh of an outline, with shorter edges where it turns until it passes its gates, or none does; and its nodes."""
     for finer in FINER:
-        turns = {"turn": field.turn / finer, "elsewhere": field.elsewhere / finer}
-        closer = replace(field, **turns, per_radius=field.per_radius * finer)
+        turn, elsewhere = field.turn / finer, field.elsewhere / finer
+        closer = replace(field, turn=turn, elsewhere=elsewhere, per_radius=field.per_radius * finer)
         try:
-            return section.mesh(contour, mesh_nodes(contour, closer), closer)
+            nodes = mesh_nodes(contour, closer)
+            return section.mesh(contour, nodes, closer), nodes
         except MeshError as error:
             refused = error
     raise refused

@@ -228,7 +228,7 @@ class Cells:
         if times.max(initial=0) < 2:
             return hanging
         closed, areas = self._closed(), self.areas()
-        for point in np.flatnonzero(times > 1):
+        for point in np.flatnonzero(times > 1).tolist():
             around = np.flatnonzero(living & (closed == point).any(axis=1))
             fans = _fans(closed[around], point)
             for fan in sorted(fans, key=lambda fan: areas[around[fan]].sum())[:-1]:

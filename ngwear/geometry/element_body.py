@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import Any
+
 import netgen.meshing as ngm
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import MeshError
-from ngwear.geometry.body import BoundaryEdges
 from ngwear.geometry.cells import HOLE, Cells
 from ngwear.geometry.meshed import Meshed
-from ngwear.geometry.outline import Array, Outline
+from ngwear.geometry.meshed_section import BoundaryEdges, MeshedSection
+from ngwear.geometry.outline import Outline
 
 Index = NDArray[np.intp]
 FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded
 
 
-class ElementBody(Meshed):
+class ElementBody(MeshedSection):
     """What of a section is left, meshed with its living elements alone: lost ones bring no unknown and no energy.
 
-    It has the interface of ``Body``. The displacement of the outline since the mesh was made is the mesh's deformation;
+    The displacement of the outline since the mesh was made is the mesh's deformation;
     it ends at the first row of nodes inside.
 
     Parameters
@@ -48,33 +51,24 @@ class ElementBody(Meshed):
         self.outline = self._outline()
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=1))
 
-    def __getstate__(self) -> dict[str, object]:
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same body of, to the last bit."""
         return {"cells": self.cells, "base": self.base, "contour": self.contour}
 
-    def __setstate__(self, saved: dict[str, object]) -> None:
-        self.__dict__.update(saved)
-        self._set_up()
-        self._deform()
-
-    @property
-    def size(self) -> float:
-        return float(np.ptp(self.contour.points, axis=0).max())
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> ElementBody:
+        """The body again."""
+        body = cls.__new__(cls)
+        body.cells, body.base, body.contour = (data[name] for name in ("cells", "base", "contour"))
+        body._set_up()
+        body._deform()
+        return body
 
     @property
     def now(self) -> Cells:
-        """The elements where they are now."""
         return self.cells.moved(self.contour.points)
 
-    def triangles(self) -> tuple[Array, Index]:
-        """Places of the mesh's vertices, and triangles of them, two for each quadrilateral: for pictures."""
-        cells = self.cells
-        number = np.zeros(len(cells.points), dtype=np.intp)
-        number[self.vertices] = np.arange(len(self.vertices))
-        corners = cells.corners[self.numbers]
-        quads = corners[corners[:, 3] >= 0]
-        return self.now.points[self.vertices], number[np.vstack([corners[:, :3], quads[:, [0, 2, 3]]])]
-
-    def boundary(self, edges: tuple[str, ...]) -> ng.Region:
+    def boundary(self, edges: Sequence[str]) -> ng.Region:
         """As in ``Meshed``; of edges that the section once had, those that it has lost are left out."""
         left = tuple(name for name in edges if name in self.region_names)
         if not left:
@@ -117,6 +111,13 @@ class ElementBody(Meshed):
         found = np.array([element[tuple(sorted(pair))] for pair in vertices.tolist()])
         t = np.stack([np.arange(n), np.arange(1, n + 1)], axis=1).astype(float)
         return BoundaryEdges(found[:, 0], vertices, found[:, 1], t, np.array(self.base.names))
+
+
+def elements(body: Meshed) -> ElementBody:
+    """The body as one whose elements can be lost; MeshError for one of another kind."""
+    if not isinstance(body, ElementBody):
+        raise MeshError(f"the elements of a {type(body).__name__} cannot be lost")
+    return body
 
 
 def _mesh(cells: Cells) -> tuple[ng.Mesh, Index, Index]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import abc
+from collections.abc import Sequence
 from functools import cached_property
 
 import ngsolve as ng
@@ -58,7 +59,7 @@ class Meshed(abc.ABC):
         """Names of the pieces of the surface that the mesh knows."""
         return tuple(self.mesh.GetBoundaries())
 
-    def boundary(self, edges: tuple[str, ...]) -> ng.Region:
+    def boundary(self, edges: Sequence[str]) -> ng.Region:
         """Return the region of the named pieces; MeshError names one that the mesh does not have."""
         missing = [name for name in edges if name not in self.region_names]
         if missing:

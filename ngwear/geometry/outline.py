@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
+from ngwear.geometry.outline_files import Drawing, read_drawing, write_drawing
 
 Array = NDArray[np.float64]
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]*")
@@ -100,6 +103,30 @@ class Outline:
         return len(self.points)
 
     @classmethod
+    def read(cls, path: Path | str) -> Outline:
+        """Read an outline from a ``.toml``, ``.csv``, ``.step`` or ``.stp`` file.
+
+        Raises
+        ------
+        GeometryError
+            If the file cannot be read or its outline is not simple, closed and counter-clockwise.
+        """
+        try:
+            return cls(*read_drawing(Path(path)))
+        except GeometryError as error:
+            raise GeometryError(f"{path}: {error}") from None
+
+    def write(self, path: Path | str) -> None:
+        """Write the outline to a ``.toml`` file, from which ``read`` gives it back to the last digit.
+
+        Raises
+        ------
+        GeometryError
+            If the file cannot be written.
+        """
+        write_drawing(Drawing(self.points, self.names, self.corners, self.provenance), Path(path))
+
+    @classmethod
     def rectangle(cls, x: tuple[float, float], y: tuple[float, float]) -> Outline:
         """Rectangle with the edges bottom, right, top and left."""
         corners = np.array([[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]])
@@ -133,7 +160,7 @@ class Outline:
         width = half + np.roll(half, 1)
         return np.where(width > 0, width, 1.0)
 
-    def on(self, edges: tuple[str, ...]) -> NDArray[np.bool_]:
+    def on(self, edges: Sequence[str]) -> NDArray[np.bool_]:
         """Return which segments belong to the named edges, shape (n,)."""
         return np.array([name in edges for name in self.names])
 

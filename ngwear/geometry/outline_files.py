@@ -1,52 +1,85 @@
-"""Read outlines from TOML, CSV and STEP files."""
+"""Outlines in files: TOML, CSV and STEP read, TOML written."""
 
 from __future__ import annotations
 
 import csv
 import tomllib
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+import tomli_w
+from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline import Outline
 
 CORNER_ANGLE = np.radians(30.0)  # a file that marks no corners gets one where the polygon turns by more
 
 
-def read_outline(path: Path) -> Outline:
+class Drawing(NamedTuple):
+    """What a file says of an outline: the arguments of ``Outline``."""
+
+    points: NDArray[np.float64]
+    names: tuple[str, ...]
+    corners: NDArray[np.bool_]
+    provenance: str
+
+
+def read_drawing(path: Path) -> Drawing:
     """Read an outline by the file's ending: ``.toml``, ``.csv``, ``.step`` or ``.stp``.
 
     Raises
     ------
     GeometryError
-        If the file cannot be read or its outline is not simple, closed and counter-clockwise.
+        If the file cannot be read.
     """
     readers = {".toml": _toml, ".csv": _csv, ".step": _step, ".stp": _step}
     reader = readers.get(path.suffix.lower())
     if reader is None:
-        raise GeometryError(f"{path}: outlines are read from {', '.join(readers)}, not from '{path.suffix}'")
+        raise GeometryError(f"outlines are read from {', '.join(readers)}, not from '{path.suffix}'")
     if not path.is_file():
-        raise GeometryError(f"{path}: there is no such outline file")
+        raise GeometryError("there is no such outline file")
     try:
         return reader(path)
-    except GeometryError as error:
-        raise GeometryError(f"{path}: {error}") from None
-    except (ValueError, KeyError, TypeError, tomllib.TOMLDecodeError) as error:
-        raise GeometryError(f"{path}: cannot be read as an outline: {error!r}") from error
+    except OSError as error:
+        raise GeometryError(f"cannot be read: {error.strerror or error}") from None
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
+        raise GeometryError(f"cannot be read as an outline: {error!r}") from error
 
 
-def _toml(path: Path) -> Outline:
+def write_drawing(drawing: Drawing, path: Path) -> None:
+    """Write an outline as TOML, every digit of it: an edge begins with each name, and at each corner.
+
+    Raises
+    ------
+    GeometryError
+        If the file cannot be written.
+    """
+    points, names, corners, provenance = drawing
+    starts = [i for i in range(len(points)) if i == 0 or corners[i] or names[i] != names[i - 1]]
+    edges = [
+        {"name": names[i], "corner": bool(corners[i]), "points": points[i:end].tolist()}
+        for i, end in zip(starts, [*starts[1:], len(points)], strict=True)
+    ]
+    try:
+        path.write_text(tomli_w.dumps({"provenance": provenance, "edge": edges}), encoding="utf-8")
+    except OSError as error:
+        raise GeometryError(f"{path} cannot be written: {error.strerror}") from None
+
+
+def _toml(path: Path) -> Drawing:
     """``[[edge]]`` tables in counter-clockwise order: name, corner (at its first point), points [[x, y], ...]."""
     data: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf-8"))
+    edges = data.get("edge", [])
+    if not isinstance(edges, list) or not all(isinstance(edge, dict) for edge in edges):
+        raise GeometryError("edge must be a list of tables [[edge]]")
     unknown = set(data) - {"title", "provenance", "coordinates", "edge"}
     if unknown:
         raise GeometryError(
             f"unknown keys {sorted(unknown)}; an outline has title, provenance, coordinates and [[edge]]"
         )
     points, names, corners = [], [], []
-    for number, edge in enumerate(data.get("edge", [])):
+    for number, edge in enumerate(edges):
         unknown = set(edge) - {"name", "corner", "points"}
         if unknown:
             raise GeometryError(f"edge[{number}]: unknown keys {sorted(unknown)}; an edge has name, corner and points")
@@ -56,10 +89,10 @@ def _toml(path: Path) -> Outline:
         points += own
         names += [str(edge["name"])] * len(own)
         corners += [bool(edge.get("corner", True))] + [False] * (len(own) - 1)
-    return Outline(np.array(points), tuple(names), np.array(corners), str(data.get("provenance", path.name)))
+    return Drawing(np.array(points), tuple(names), np.array(corners), str(data.get("provenance", path.name)))
 
 
-def _csv(path: Path) -> Outline:
+def _csv(path: Path) -> Drawing:
     """Columns ``x [mm], y [mm], edge`` and optionally ``corner`` (0 or 1), one row a point, counter-clockwise."""
     with path.open(newline="", encoding="utf-8-sig") as file:
         rows = list(csv.DictReader(file))
@@ -73,7 +106,7 @@ def _csv(path: Path) -> Outline:
     names = tuple((row["edge"] or "").strip() for row in rows)
     marked = "corner" in columns
     corners = np.array([bool(int(row["corner"])) for row in rows]) if marked else _sharp(points)
-    return Outline(points, names, corners, path.name)
+    return Drawing(points, names, corners, path.name)
 
 
 def _sharp(points: np.ndarray) -> np.ndarray:
@@ -82,7 +115,7 @@ def _sharp(points: np.ndarray) -> np.ndarray:
     return np.abs((angle - np.roll(angle, 1) + np.pi) % (2 * np.pi) - np.pi) > CORNER_ANGLE
 
 
-def _step(path: Path) -> Outline:
+def _step(path: Path) -> Drawing:
     """The first face of the file, in its x-y plane; edges keep their names or are called ``edge 1`` and so on."""
     import netgen.occ as occ
 
@@ -115,7 +148,7 @@ def _sampled(edge: Any, max_turn: float = 0.2) -> np.ndarray:
     return points
 
 
-def _joined(pieces: list[tuple[str, np.ndarray]], provenance: str) -> Outline:
+def _joined(pieces: list[tuple[str, np.ndarray]], provenance: str) -> Drawing:
     """Chain edge polylines head to tail into a counter-clockwise outline."""
     scale = max(np.ptp(np.vstack([p for _, p in pieces]), axis=0))
     rest = pieces[1:]
@@ -140,4 +173,4 @@ def _joined(pieces: list[tuple[str, np.ndarray]], provenance: str) -> Outline:
         points = np.roll(points[::-1], 1, axis=0)
         names = names[::-1]
     starts = np.array([any(np.allclose(p, end) for _, own in chain for end in (own[0], own[-1])) for p in points])
-    return Outline(points, tuple(names), starts, provenance)
+    return Drawing(points, tuple(names), starts, provenance)

@@ -13,6 +13,7 @@ from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField
 
 MIN_ANGLE = 12.0  # degrees; the mesher usually reaches 28
+MATERIAL, CURVE = "rubber", 2  # the mesh's name for the section; order of its curves
 
 
 def face(contour: Outline, nodes: NDArray[np.intp]) -> occ.Face:
@@ -34,6 +35,12 @@ def face(contour: Outline, nodes: NDArray[np.intp]) -> occ.Face:
     return result
 
 
+def geometry(section: occ.Face) -> occ.OCCGeometry:
+    """What the mesher takes, and what curves a mesh."""
+    section.name = MATERIAL
+    return occ.OCCGeometry(section, dim=2)
+
+
 def _edge(contour: Outline, span: NDArray[np.intp]) -> occ.Edge:
     """The outline's spline over one or more segments: exact for one, through all points and tangents for more."""
     control = contour.bezier[span]
@@ -53,14 +60,13 @@ def mesh(contour: Outline, nodes: NDArray[np.intp], field: SizeField) -> ng.Mesh
         If area, edge names, smallest angle or Jacobian do not pass their gates.
     """
     section = face(contour, nodes)
-    section.name = "rubber"
-    geometry = occ.OCCGeometry(section, dim=2)
+    shape = geometry(section)
     for seed, size in zip(field.seeds, field.sizes, strict=True):
         if size < 0.5 * field.coarse:
-            geometry.RestrictH(ngm.Pnt(*seed, 0), size)
+            shape.RestrictH(ngm.Pnt(*seed, 0), size)
     lengths = {"maxh": field.coarse, "grading": field.grading, "curvaturesafety": field.per_radius}
-    result = ng.Mesh(geometry.GenerateMesh(**lengths))
-    result.Curve(2)
+    result = ng.Mesh(shape.GenerateMesh(**lengths))
+    result.Curve(CURVE)
     check(result, area=section.mass, names=set(contour.names))
     return result
 

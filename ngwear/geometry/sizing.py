@@ -56,7 +56,7 @@ def fitted(contour: Outline, field: SizeField, *, on_chord: bool = False) -> Out
     Segments are halved on the spline, or on the polygon (``on_chord``), whose area then stays exactly the same.
     """
     while True:
-        middle = np.arange(len(contour)) + 0.5
+        middle = np.arange(len(contour), dtype=float) + 0.5
         ends = field(contour.points)
         h = np.minimum(np.minimum(ends, np.roll(ends, -1)), field(contour.at(middle)))
         long = contour.lengths > 1.3 * h
@@ -81,7 +81,7 @@ def divided(contour: Outline, edges: tuple[str, ...], longest: float) -> Outline
 
 def _halved(contour: Outline, edges: tuple[str, ...], longest: float, *, curved: bool) -> Outline:
     while True:
-        middle = np.arange(len(contour)) + 0.5
+        middle = np.arange(len(contour), dtype=float) + 0.5
         sagitta = np.linalg.norm(contour.at(middle) - contour.on_polygon(middle), axis=1)
         mine = (sagitta > 1e-6 * contour.lengths) == curved
         split = contour.on(edges) & (contour.lengths > longest) & mine

@@ -40,18 +40,25 @@ class FrictionLaw(abc.ABC):
     Distance and speed stand still while a stroke is solved, the pressure does not. So a law is taken in two steps:
     ``held`` makes numbers of distance and speed, ``of_pressure`` makes mu of these and of a pressure, in plain
     arithmetic, so that numbers, arrays and NGSolve's coefficient functions may come in.
-
-    Attributes
-    ----------
-    depends_on_speed, depends_on_pressure : bool
-    breaks : tuple of float
-        Sliding distances at which the law bends [mm]: its extremes lie there, or at the ends of a range. Empty for a
-        law that does not know the distance.
     """
 
-    depends_on_speed: bool = False
-    depends_on_pressure: bool = False
-    breaks: tuple[float, ...] = ()
+    @property
+    def depends_on_speed(self) -> bool:
+        """Whether mu changes with the speed."""
+        return False
+
+    @property
+    def depends_on_pressure(self) -> bool:
+        """Whether mu changes with the pressure."""
+        return False
+
+    @property
+    def breaks(self) -> tuple[float, ...]:
+        """Sliding distances at which the law bends [mm]: its extremes lie there, or at the ends of a range.
+
+        Empty for a law that does not know the distance.
+        """
+        return ()
 
     @abc.abstractmethod
     def held(self, distance: float, speed: float | None) -> tuple[float, ...]:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from ngwear.errors import check_fields
 from ngwear.laws.base import FrictionLaw, require_number
 
 
@@ -22,6 +23,7 @@ class Constant(FrictionLaw):
     value: float
 
     def __post_init__(self) -> None:
+        check_fields(self, "friction")
         require_number("friction", self.value)
 
     def held(self, distance: float, speed: float | None) -> tuple[float, ...]:

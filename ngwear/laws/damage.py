@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.spatial import cKDTree
 
-from ngwear.errors import require
+from ngwear.errors import check_fields, require
 
 Array = NDArray[np.float64]
 
@@ -71,6 +71,7 @@ class Criterion(abc.ABC):
     accumulates = False
 
     def __post_init__(self) -> None:
+        check_fields(self, "deactivation.damage")
         place = "deactivation.damage"
         require(self.critical > 0, f"{place}.critical", self.critical, "must be greater than 0")
         positive = self.length is None or self.length > 0

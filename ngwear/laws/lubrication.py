@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from ngwear.errors import check_fields
 from ngwear.files.columns import read_columns
 from ngwear.laws.base import FrictionLaw
 from ngwear.laws.table import check_table
@@ -40,6 +41,7 @@ class Lubrication(FrictionLaw):
     coefficient: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        check_fields(self, "friction")
         check_table("friction", "coefficient", self.distance, self.coefficient, unit="")
 
     @classmethod

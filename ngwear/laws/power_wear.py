@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ngwear.errors import check_fields
 from ngwear.laws.base import require_number
 from ngwear.laws.wear_law import NO_FRICTION, Choice, WearLaw, if_positive
 
@@ -35,6 +36,7 @@ class PowerWear(WearLaw):
     reference_pressure: float = 1.0
 
     def __post_init__(self) -> None:
+        check_fields(self, "wear_law")
         require_number("wear_law.exponent", self.exponent, above=0.0)
         require_number("wear_law.reference_pressure", self.reference_pressure, above=0.0)
 

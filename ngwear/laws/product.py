@@ -30,6 +30,10 @@ class Product(FrictionLaw):
     factors: tuple[FrictionLaw, ...]
 
     def __post_init__(self) -> None:
+        laws = isinstance(self.factors, Sequence) and all(isinstance(law, FrictionLaw) for law in self.factors)
+        if not laws:
+            raise SceneError("friction.factors", self.factors, "must be a list of laws of friction")
+        object.__setattr__(self, "factors", tuple(self.factors))
         if len(self.factors) < 2:
             raise SceneError("friction.factors", len(self.factors), "a product needs at least two laws")
 

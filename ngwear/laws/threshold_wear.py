@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+from ngwear.errors import check_fields
 from ngwear.laws.base import require_number
 from ngwear.laws.wear_law import NO_FRICTION, Choice, WearLaw, if_positive
 
@@ -30,6 +31,7 @@ class ThresholdWear(WearLaw):
     pressure: float
 
     def __post_init__(self) -> None:
+        check_fields(self, "wear_law")
         require_number("wear_law.pressure", self.pressure)
 
     def factor(self, pressure: Any, friction: tuple[Any, Any] = NO_FRICTION, choose: Choice = if_positive) -> Any:

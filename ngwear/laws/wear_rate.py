@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.errors import check_fields
 from ngwear.files.columns import read_columns
 from ngwear.laws.base import Curve
 from ngwear.laws.table import area_below, check_table
@@ -39,6 +40,7 @@ class WearRate:
     rate: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        check_fields(self, "specific_wear_rate")
         check_table("specific_wear_rate", "rate", self.distance, self.rate, unit=" mm²/N")
 
     @classmethod

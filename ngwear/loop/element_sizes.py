@@ -22,8 +22,9 @@ def laid_out(scene: Scene) -> Scene:
     if accuracy.patch is not None:
         return scene
     size = float(np.ptp(scene.part.outline.points, axis=0).min())
-    lengths = {"patch": MOUNTING * size, "mounting": MOUNTING * size, "coarse": COARSE * size}
-    return replace(scene, accuracy=replace(accuracy, across=None, error=None, **lengths))
+    edge, coarse = MOUNTING * size, COARSE * size
+    lengths = replace(accuracy, across=None, error=None, peak_error=None, patch=edge, mounting=edge, coarse=coarse)
+    return replace(scene, accuracy=lengths)
 
 
 def chosen(stage: Stage, phases: list[Array], across: float) -> Scene:
@@ -44,5 +45,5 @@ def chosen(stage: Stage, phases: list[Array], across: float) -> Scene:
     if load == 0.0:
         return stage.scene
     patch = moment / load / across
-    lengths = {"patch": patch, "mounting": max(accuracy.mounting, patch), "coarse": max(accuracy.coarse, patch)}
-    return replace(stage.scene, accuracy=replace(accuracy, **lengths))
+    mounting, coarse = max(accuracy.lengths.mounting, patch), max(accuracy.lengths.coarse, patch)
+    return replace(stage.scene, accuracy=replace(accuracy, patch=patch, mounting=mounting, coarse=coarse))

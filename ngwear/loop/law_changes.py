@@ -38,7 +38,7 @@ def friction_range(scene: Scene, contact: Contact) -> tuple[float, float]:
 
 
 def _is_steady(scene: Scene, start: float, end: float) -> bool:
-    last, error = scene.program.slid(scene.program.strokes), scene.accuracy.wear_error
+    last, error = scene.program.slid(scene.program.strokes), scene.accuracy.tolerances.wear_error
     for contact in scene.contacts:
         friction = list(_friction(scene, contact))
         for curve in (*friction, contact.wear_rate.curve):
@@ -55,5 +55,6 @@ def _is_steady(scene: Scene, start: float, end: float) -> bool:
 def _friction(scene: Scene, contact: Contact) -> Iterator[Curve]:
     """The contact's friction over distance, at the speed of each kind of stroke."""
     law = contact.friction_law
-    for speed in {stroke.speed for stroke in scene.program.cycle} if law is not None else ():
-        yield law.curve(speed)
+    if law is not None:
+        for speed in {stroke.speed for stroke in scene.program.cycle}:
+            yield law.curve(speed)

@@ -12,14 +12,15 @@ from ngwear.effects.base import DISPLACEMENT
 from ngwear.equilibrium.lost_elements_transfer import keep
 from ngwear.errors import GeometryError, MeshError, SceneError, require
 from ngwear.geometry.cells import Cells, Fate
-from ngwear.geometry.element_body import ElementBody
+from ngwear.geometry.element_body import ElementBody, elements
 from ngwear.geometry.layers import layered
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import STEEPEST
-from ngwear.laws.damage import Stresses
+from ngwear.laws.damage import Criterion, Stresses
 from ngwear.loop.remeshing import adopt
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
+from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
@@ -37,12 +38,27 @@ def element_body(scene: Scene) -> ElementBody:
     SceneError
         If the layers do not fit the section.
     """
-    accuracy, depth = scene.accuracy, scene.deactivation.depth
-    sizes = {"edge": accuracy.patch, "coarse": accuracy.coarse, "grading": accuracy.grading}
+    lengths, depth = scene.accuracy.lengths, _asked(scene).depth
+    sizes = {"edge": lengths.patch, "coarse": lengths.coarse, "grading": lengths.grading}
     try:
         return ElementBody(layered(scene.part.outline, scene.worn_edges, depth=depth, **sizes))
     except GeometryError as error:
         raise SceneError("deactivation.depth", depth, f"no such layers fit the section: {error}") from None
+
+
+def _asked(scene: Scene) -> Deactivation:
+    """What a scene says of losing elements; SceneError if it says nothing."""
+    if scene.deactivation is None:
+        raise SceneError("deactivation", None, "is missing: the scene says of no element how it is lost")
+    return scene.deactivation
+
+
+def _criterion(scene: Scene) -> Criterion:
+    """What tears its elements; SceneError if nothing does."""
+    damage = _asked(scene).damage
+    if damage is None:
+        raise SceneError("deactivation.damage", None, "is missing: nothing tears an element")
+    return damage
 
 
 def stresses(stage: Stage) -> Stresses:
@@ -65,7 +81,8 @@ def stresses(stage: Stage) -> Stresses:
 
 def loaded(stage: Stage) -> dict[str, Array]:
     """Displacement of the points and mean stresses of the elements in the present state; nan where they are lost."""
-    body, cells = stage.body, stage.body.cells
+    body = elements(stage.body)
+    cells = body.cells
     displacement, stress = np.full((len(cells.points), 2), np.nan), np.full((len(cells.fate), 3), np.nan)
     moved = stage.problem.state.vec.FV().NumPy()[stage.problem.part(DISPLACEMENT)].reshape(2, -1)
     displacement[body.vertices] = moved[:, : len(body.vertices)].T
@@ -75,10 +92,10 @@ def loaded(stage: Stage) -> dict[str, Array]:
 
 def exhaustion(state: State, repeats: int) -> Array:
     """How much of what it bears each element of the layers is under after so many such cycles; 0 where it is lost."""
-    stage, cells = state.stage, state.stage.body.cells
-    criterion = stage.scene.deactivation.damage
+    stage, body = state.stage, elements(state.stage.body)
+    cells, criterion = body.cells, _criterion(stage.scene)
     out = np.zeros(len(cells.fate))
-    out[stage.body.numbers] = _usage(stage)
+    out[body.numbers] = _usage(stage)
     if criterion.accumulates:
         out = state.fatigue + max(repeats, 1) * np.maximum(state.strained, out)
     return np.where(cells.living & cells.layers & _near_contact(stage), out, 0.0)
@@ -86,16 +103,17 @@ def exhaustion(state: State, repeats: int) -> Array:
 
 def _usage(stage: Stage) -> Array:
     """How much of what it bears each living element is under, in the mesh's order; of fatigue, what a cycle uses up."""
-    criterion, found = stage.scene.deactivation.damage, stresses(stage)
+    criterion, found = _criterion(stage.scene), stresses(stage)
     if criterion.length is not None:
-        cells, mine = stage.body.now, stage.body.numbers
+        body = elements(stage.body)
+        cells, mine = body.now, body.numbers
         found = found.averaged(cells.centres()[mine], cells.areas()[mine], criterion.length)
     return criterion.exhaustion(found)
 
 
 def _near_contact(stage: Stage) -> Mask:
     """Which elements lie within reach of a contact that wears and carries load."""
-    cells, reach = stage.body.now, stage.scene.deactivation.reach
+    cells, reach = elements(stage.body).now, _asked(stage.scene).reach
     if reach is None:
         return np.ones(len(cells.fate), dtype=bool)
     profiles = [stage.contacts[c.name].profile() for c in stage.scene.contacts if c.wears]
@@ -114,7 +132,7 @@ def begin(state: State) -> None:
     SceneError
         With the place where the mounted part bears most.
     """
-    cells, damage = state.stage.body.cells, state.stage.scene.deactivation.damage
+    cells, damage = elements(state.stage.body).cells, _asked(state.stage.scene).damage
     if damage is None:
         return
     state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
@@ -138,23 +156,23 @@ def tear(state: State, outline: Outline, repeats: int) -> bool:
     GeometryError
         If nothing is left, or the section is cut in two.
     """
-    damage = state.stage.scene.deactivation.damage
-    if damage is None:
+    if _asked(state.stage.scene).damage is None:
         return False
     torn = exhaustion(state, repeats) >= 1.0
     if not torn.any():
         return False
-    state.stage.body.move_to(outline)
-    lose(state, state.stage.body.now, torn, Fate.TORN)
+    body = elements(state.stage.body)
+    body.move_to(outline)
+    lose(state, body.now, torn, Fate.TORN)
     return True
 
 
 def tire(state: State, repeats: int, *, last: bool) -> None:
     """Note how the accepted stroke has strained the elements, of a criterion that adds up over cycles."""
-    deactivation = state.stage.scene.deactivation
-    if deactivation is None or deactivation.damage is None or not deactivation.damage.accumulates:
+    damage = _asked(state.stage.scene).damage
+    if damage is None or not damage.accumulates:
         return
-    mine = state.stage.body.numbers
+    mine = elements(state.stage.body).numbers
     state.strained[mine] = np.maximum(state.strained[mine], _usage(state.stage))
     if last:
         state.fatigue = state.fatigue + repeats * state.strained
@@ -200,7 +218,7 @@ def follow(state: State, outline: Outline, points: Array) -> None:
     GeometryError
         If nothing is left, or the section is cut in two.
     """
-    body, sieve = state.stage.body, state.stage.scene.deactivation.distortion
+    body, sieve = elements(state.stage.body), _asked(state.stage.scene).distortion
     cells = moved = body.cells.moved(points)
     worn = moved.area
     went = dict(zip(cells.rim.tolist(), np.linalg.norm(points - outline.points, axis=1), strict=True))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from copy import copy
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from ngwear.materials import PronySeries
 from ngwear.wear.cycle_jumps import Plan, before_last, whole
 
 Array = NDArray[np.float64]
+STORED = ("background", "durations", "ratios", "times", "relaxed", "stresses")
 
 
 class CycleMemory:
@@ -53,6 +55,18 @@ class CycleMemory:
         relaxed = -self.ratios * np.expm1(-rest / self.times)
         self.relaxed = relaxed[:, None, None, None] * mounted  # q_i; replaced, never written to
         self.stresses = (mounted,) * len(self.durations)  # S_k, likewise
+
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same memory of, to the last bit."""
+        return {name: getattr(self, name) for name in STORED}
+
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> CycleMemory:
+        """The memory again."""
+        memory = cls.__new__(cls)
+        for name in STORED:
+            setattr(memory, name, data[name])
+        return memory
 
     def in_halves(self) -> CycleMemory:
         """The same for a cycle whose strokes are divided once more, each into two."""

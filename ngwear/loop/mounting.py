@@ -26,7 +26,7 @@ def warn_if_unstable(scene: Scene) -> None:
     """Warn, where the caller was called, of explicit steps that grow ripples of the pressure."""
     wear, cycle = scene.wear, scene.program.cycle
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
-    critical = critical_distance(scene.accuracy.patch, rate, scene.part.material.plane_strain_modulus)
+    critical = critical_distance(scene.accuracy.lengths.patch, rate, scene.part.material.plane_strain_modulus)
     longest = max(s.travel for s in cycle)
     if wear.scheme == "explicit" and longest > critical:
         warnings.warn(

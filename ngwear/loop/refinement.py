@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
+from ngwear.geometry.body import Body
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import SizeField, smoothed
 from ngwear.loop.stage import Stage
@@ -56,8 +57,11 @@ def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0, left: f
     Gaps count up to half as wide as those that ``contact_sizes`` makes a mesh for, so that no mesh is outgrown as soon
     as it is made.
     """
-    wanted, body = wanted_size(stage, phases, reach=NEARER, sliding=sliding, left=left), stage.body
-    slack = np.where(wanted.sizes > stage.scene.accuracy.patch, STRESS_SLACK, CONTACT_SLACK)
+    body = stage.body
+    if not isinstance(body, Body):  # one that loses elements is never meshed anew
+        return False
+    wanted = wanted_size(stage, phases, reach=NEARER, sliding=sliding, left=left)
+    slack = np.where(wanted.sizes > stage.scene.accuracy.lengths.patch, STRESS_SLACK, CONTACT_SLACK)
     return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
 
 
@@ -82,9 +86,8 @@ def contact_sizes(
 
     Where the leak pressure is asked for, also the patch's where the fluid meets a contact, followed or not.
     """
-    accuracy, contour = stage.scene.accuracy, stage.body.contour
+    lengths, contour = stage.scene.accuracy.lengths, stage.body.contour
     size, fronts = np.full(len(contour), np.inf), [np.empty((0, 2))]
-    leaks = stage.fluid is not None and stage.scene.fluid.leak_pressure
     vector = stage.problem.state.vec.FV().NumPy()
     keep = vector.copy()
     for phase in phases:
@@ -96,19 +99,18 @@ def contact_sizes(
             wearing = pressure * contact.wear_factor(profile.pressure)
             rate = spec.wear_rate.highest * wearing.max(initial=0.0)
             deepest = rate * left if rate > 0 else 0.0
-            soon = reach * min(accuracy.patch, max(LEAST * accuracy.patch, deepest / NEAR)) + rate * sliding
-            patch = element_edges(profile, accuracy.patch, across)
+            soon = reach * min(lengths.patch, max(LEAST * lengths.patch, deepest / NEAR)) + rate * sliding
+            patch = element_edges(profile, lengths.patch, across)
             near = (pressure > 0) | (profile.gap < soon)
             ask = _spanned(contour, profile, near)
             size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
-        if leaks:
-            fronts.append(_beside(contour, stage.fluid.fronts(), accuracy.patch))
+        if stage.leaking is not None:
+            fronts.append(_beside(contour, stage.leaking.fronts(), lengths.patch))
     vector[:] = keep
-    ask, fronts = size < np.inf, np.vstack(fronts)
-    seeds, sizes = np.vstack([contour.points[ask], fronts]), np.append(size[ask], np.full(len(fronts), accuracy.patch))
+    ask, places = size < np.inf, np.vstack(fronts)
+    seeds, sizes = np.vstack([contour.points[ask], places]), np.append(size[ask], np.full(len(places), lengths.patch))
     turn = TURN if across is None else min(TURN * max(1.0, FEW / across), WIDEST_TURN)
-    lengths = (accuracy.coarse, accuracy.grading)
-    return SizeField(seeds, sizes, *lengths, elsewhere=turn, per_radius=_per_radius(across))
+    return SizeField(seeds, sizes, lengths.coarse, lengths.grading, elsewhere=turn, per_radius=_per_radius(across))
 
 
 def _per_radius(across: float | None) -> float:
@@ -129,8 +131,7 @@ def _beside(contour: Outline, t: Array, apart: float) -> Array:
 
 def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:
     """Element edge for each node of a contact by its zone, or the nearest one, shape (k,)."""
-    zones = profile.zones() if across is not None else []
-    if not zones:
+    if across is None or not (zones := profile.zones()):
         return np.full(len(profile.t), patch)
     nodes = np.concatenate([np.arange(zone.nodes.start, zone.nodes.stop) for zone in zones])
     edges = np.concatenate([np.full(zone.nodes.stop - zone.nodes.start, zone.width / across) for zone in zones])
@@ -148,7 +149,9 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
     falls with the square (the shipped shaft then has 7,000 elements; by the first power it had 8,800). A tolerance of 1
     asks for nothing.
     """
-    if stage.scene.accuracy.stress_error == 1:
+    accuracy = stage.scene.accuracy
+    tolerance = accuracy.tolerances.stress_error
+    if tolerance == 1:
         return np.empty((0, 2)), np.empty(0)
     points, elasticity = stage.problem.points, stage.elasticity
     points.follow()
@@ -159,9 +162,9 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
         off = stress[..., :5] - points.recovered(stress[..., :5])
         error = np.sqrt((points.volumes * (off**2).sum(axis=-1)).sum(axis=1) / (2 * elasticity.material.shear_modulus))
         energy = (points.volumes * elasticity.energy(strain)).sum()
-        share = stage.scene.accuracy.stress_error * np.sqrt(energy / len(edge))
+        share = tolerance * np.sqrt(energy / len(edge))
         edge = np.minimum(edge, points.edges * (share / np.maximum(error, 1e-12 * share)) ** power)
-    return points.centres, np.maximum(edge, stage.scene.accuracy.patch)
+    return points.centres, np.maximum(edge, accuracy.lengths.patch)
 
 
 def _spanned(contour: Outline, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -178,7 +181,7 @@ def _spanned(contour: Outline, profile: ContactProfile, near: NDArray[np.bool_])
 
 def unworn_outline(scene: Scene) -> Outline:
     """The scene's outline with points as near to each other as elements of its patch ask for."""
-    return smoothed(scene.part.outline, scene.worn_edges, 1.3 * scene.accuracy.patch)
+    return smoothed(scene.part.outline, scene.worn_edges, 1.3 * scene.accuracy.lengths.patch)
 
 
 def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
@@ -186,7 +189,7 @@ def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
 
     ``across`` is that of a scene whose lengths come from it.
     """
-    accuracy, contour = scene.accuracy, scene.part.outline
+    lengths, contour = scene.accuracy.lengths, scene.part.outline
     curved = np.abs(contour.turning) > 1e-3
     mine = np.zeros(len(contour), dtype=bool)
     for spec in scene.followed:
@@ -196,8 +199,8 @@ def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
     for spec in scene.followed:
         if len(seeds) == 0 or spec.force is not None:
             seeds = np.vstack([seeds, _nearest_place(scene, spec)])
-    sizes, grading = np.full(len(seeds), accuracy.mounting), max(accuracy.grading, 0.3)
-    return SizeField(seeds, sizes, accuracy.coarse, grading, turn=0.5, per_radius=_per_radius(across))
+    sizes, grading = np.full(len(seeds), lengths.mounting), max(lengths.grading, 0.3)
+    return SizeField(seeds, sizes, lengths.coarse, grading, turn=0.5, per_radius=_per_radius(across))
 
 
 def _nearest_place(scene: Scene, spec: Contact) -> Array:

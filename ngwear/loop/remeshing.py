@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -30,11 +31,10 @@ def is_due(state: State) -> bool:
     Never so if the scene lets the nodes move as far as they can.
     """
     body, scene = state.stage.body, state.stage.scene
-    accuracy = scene.accuracy
     if scene.wear.remesh != "due":
         return False
     moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
-    if moved > FARTHEST * accuracy.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
+    if moved > FARTHEST * scene.accuracy.lengths.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
         return True
     return outgrown(state.stage, [p.vector for p in state.phases], **still_ahead(state))
 
@@ -81,8 +81,8 @@ def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
     values = _Moved(state.contour, stage.body.contour)
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
-        if phase.pressure is not None:
-            phase.pressure, phase.mean = values(phase.pressure), values(phase.mean)
+        if phase.worn is not None:
+            phase.worn = replace(phase.worn, pressure=values(phase.worn.pressure), mean=values(phase.worn.mean))
     if state.depths is not None:
         state.depths = values(state.depths)
     state.stage = stage

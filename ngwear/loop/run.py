@@ -2,73 +2,49 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
+from ngwear.loop.checkpoint import load, save
+from ngwear.loop.result import Result
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
+from ngwear.results.kept_sections import KeptSections
 from ngwear.results.recorder import Folder, Recorder
-from ngwear.results.result_file import Snapshot
 from ngwear.scene.scene import Scene
 
-
-@dataclass(frozen=True)
-class Result:
-    """How a run ended, and what it found.
-
-    Attributes
-    ----------
-    status : str
-        ``"completed"`` or ``"gave up"``.
-    message : str
-        Why it stopped.
-    summary : dict
-        As in ``summary.json``.
-    recorder : Recorder
-        Rows (as in ``series.csv``) and snapshots.
-    state : State or None
-        The last accepted state; None if the part could not be mounted.
-    error : Exception or None
-        What made it give up.
-    """
-
-    status: str
-    message: str
-    summary: dict[str, Any]
-    recorder: Recorder
-    state: State | None
-    error: Exception | None = None
+log = logging.getLogger(__name__)
 
 
 class Drawing(Protocol):
     """What draws the figures of a run."""
 
-    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
-        """Draw the mesh, or have it drawn meanwhile."""
+    def first(self, folder: Path, kept: KeptSections) -> None:
+        """Draw the loaded section of the part before it wears, or have it drawn meanwhile."""
 
     def rest(self, folder: Path) -> None:
-        """Draw all that is not there; it is when this returns."""
+        """Draw all figures; they are there when this returns."""
 
 
 class DrawnHere:
     """What draws the figures of a run in this process."""
 
-    def mesh(self, folder: Path, scene: str, first: Snapshot) -> None:
-        """Draw the mesh."""
-        from ngwear.plots.wear import plot_mesh
+    def first(self, folder: Path, kept: KeptSections) -> None:
+        """Draw the loaded section."""
+        from ngwear.plots.wear import plot_section
 
-        plot_mesh(folder, scene, first)
+        plot_section(folder, kept)
 
     def rest(self, folder: Path, share: tuple[int, int] = (0, 1)) -> None:
-        """Draw all that is not there, or this process's share of it (``ngwear.plots.wear.plot``)."""
+        """Draw all, or this process's share of it (``ngwear.plots.wear.plot``)."""
         from ngwear.plots.wear import plot
 
-        plot(folder, again=False, share=share)
+        plot(folder, share=share)
 
 
 def run(
@@ -97,7 +73,7 @@ def run(
     throw : bool
         Raise when the run gives up; else return a result that says why. What it had is saved either way.
     figures : bool
-        Draw into the folder: the mesh once the part is mounted, all other figures at the end.
+        Draw into the folder: the loaded section once the part is mounted, all figures at the end.
     on_step : callable or None
         Called with the state after mounting and after each accepted step.
     errors : callable or None
@@ -115,7 +91,7 @@ def run(
     """
     on_step, draw = on_step or (lambda state: None), draw or DrawnHere()
     folder = None if out is None else Folder(Path(out), scene, resume=resume)
-    saved = folder.load() if folder is not None and resume else None
+    saved = load(folder, scene) if folder is not None and resume else None
     wall, cpu = time.perf_counter(), time.process_time()
     state, recorder = saved if saved is not None else (None, Recorder(scene))
     wall, cpu = wall - recorder.wall, cpu - recorder.cpu
@@ -127,7 +103,7 @@ def run(
                 state = stepper.start()
                 _keep(folder, state, recorder, wall, cpu)
                 if folder is not None and figures and recorder.snapshots:
-                    draw.mesh(folder.path, scene.name, recorder.snapshots[0])
+                    draw.first(folder.path, recorder.sections)
                 on_step(state)
             bar.begin(state)
             while not stepper.finished(state):
@@ -137,6 +113,8 @@ def run(
                 bar.update(state, recorder)
         except (ConvergenceError, GeometryError, MeshError) as failure:
             error = failure
+    if error is not None and state is not None:
+        _keep_last(stepper, state, recorder)
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
@@ -145,7 +123,7 @@ def run(
         done = None if state is None else scene.program.counted(state.strokes)
         message = f"{'the part cannot be mounted' if done is None else f'after stroke {done}'}: {error}"
     times = {"wall time [s]": round(recorder.wall, 3), "CPU time [s]": round(recorder.cpu, 3)}
-    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
+    summary: dict[str, Any] = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
         summary["error estimates"] |= by_time_step
@@ -165,14 +143,22 @@ def run(
             draw.rest(folder.path)
     if error is not None and throw:
         raise error
-    return Result(status, message, summary, recorder, state, error)
+    return Result(status, message, summary, recorder, state, error, None if folder is None else folder.path)
 
 
 def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, cpu: float) -> None:
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     recorder.add(state, wall=recorder.wall)
     if folder is not None:
-        folder.save(state, recorder)
+        save(folder, state, recorder)
+
+
+def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
+    """Keep the loaded section as it was when a run gave up: what there is to see tells why."""
+    try:
+        recorder.add_sections(stepper.sections(state))
+    except (ConvergenceError, GeometryError, MeshError) as error:
+        log.info("the last section is not kept: %s", error)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
@@ -217,7 +203,8 @@ class _Bar:
         from tqdm import tqdm
 
         self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
-        self._scene, self._bar = scene, None
+        self._scene = scene
+        self._bar: Any = None
 
     def __enter__(self) -> _Bar:
         return self

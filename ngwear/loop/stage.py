@@ -14,7 +14,8 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
-from ngwear.geometry.body import Body
+from ngwear.geometry.meshed_section import MeshedSection
+from ngwear.laws import FrictionLaw
 from ngwear.scene.contact import Contact
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
@@ -22,7 +23,8 @@ from ngwear.surfaces import WornProfile
 
 if TYPE_CHECKING:  # an effect that the scene does not list is not even imported
     from ngwear.effects.fluid_pressure import FluidPressure
-    from ngwear.effects.friction import Friction
+    from ngwear.effects.friction import Friction, FullSliding
+    from ngwear.effects.stick_slip import StickSlip
     from ngwear.effects.stroke_memory import StrokeMemory
     from ngwear.fields.background_mesh import Background
 
@@ -36,6 +38,7 @@ class Stage:
     ----------
     contacts : dict of str to OutlineContact
     frictions : dict of str to Friction
+        All of these: those that may stick, ``sticking``, and those in full sliding, ``sliding``.
     fluid : FluidPressure or None
     memory : StrokeMemory or None
     problem : Problem
@@ -43,7 +46,7 @@ class Stage:
     ``background`` is where the scene's memory lives; without one, as while the part is mounted, there is none.
     """
 
-    def __init__(self, scene: Scene, body: Body, background: Background | None = None) -> None:
+    def __init__(self, scene: Scene, body: MeshedSection, background: Background | None = None) -> None:
         self.scene, self.body = scene, body
         rubber = scene.rubber
         modulus = rubber.shear_modulus
@@ -57,14 +60,19 @@ class Stage:
                 order=scene.accuracy.order,
                 force_controlled=spec.force is not None,
                 wears=spec.wears,
-                counter=WornProfile.of(spec.surface, scene.accuracy.patch) if spec.counter_wear_rate > 0 else None,
+                counter=WornProfile.of(spec.surface, scene.accuracy.lengths.patch)
+                if spec.counter_wear_rate > 0
+                else None,
             )
             for spec in scene.contacts
         }
         self.frictions: dict[str, Friction] = {}
+        self.sticking: dict[str, StickSlip] = {}
+        self.sliding: dict[str, FullSliding] = {}
         for spec in scene.contacts:
-            if spec.friction_law is not None:
-                self.frictions[spec.name] = self._friction(spec)
+            law = spec.friction_law
+            if law is not None:
+                self.frictions[spec.name] = self._friction(spec, law)
             if spec.wears and spec.wear_law is not None:
                 from ngwear.effects.pressure_wear import PressureWear
 
@@ -80,10 +88,10 @@ class Stage:
         if self.fluid is not None:
             terms.append(self.fluid)
         self.memory: StrokeMemory | None = None
-        if background is not None:
+        if background is not None and (arms := scene.arms) is not None:
             from ngwear.effects.stroke_memory import StrokeMemory
 
-            self.memory = StrokeMemory(rubber, scene.arms, background)
+            self.memory = StrokeMemory(rubber, arms, background)
             terms.append(self.memory)
         self.problem = Problem(
             body,
@@ -93,17 +101,19 @@ class Stage:
             order=scene.accuracy.order,
         )
 
-    def _friction(self, spec: Contact) -> Friction:
-        """The friction of a contact that has a law of it."""
+    def _friction(self, spec: Contact, law: FrictionLaw) -> Friction:
+        """The friction of a contact that has this law of it."""
         scene, contact = self.scene, self.contacts[spec.name]
         speed = scene.program.cycle[0].speed
         if scene.may_stick(spec):
             from ngwear.effects.stick_slip import StickSlip
 
-            return StickSlip(contact, spec.friction_law, speed=speed)
+            self.sticking[spec.name] = StickSlip(contact, law, speed=speed)
+            return self.sticking[spec.name]
         from ngwear.effects.friction import FullSliding
 
-        return FullSliding(contact, spec.friction_law, speed=speed, stepped=scene.deactivation is not None)
+        self.sliding[spec.name] = FullSliding(contact, law, speed=speed, stepped=scene.deactivation is not None)
+        return self.sliding[spec.name]
 
     def stroke_loads(self, stroke: Stroke) -> dict[str, float]:
         """Loads of a stroke: every surface in its place, sliding in the stroke's direction, under its pressure."""
@@ -120,24 +130,29 @@ class Stage:
         return loads
 
     @property
+    def leaking(self) -> FluidPressure | None:
+        """The fluid, where the scene asks what pressure of it the contacts hold."""
+        spec = self.scene.fluid
+        return self.fluid if spec is not None and spec.leak_pressure else None
+
+    @property
     def remembers(self) -> bool:
         """Whether friction sticks, so that a stroke depends on where the one before it ended."""
-        return any(friction.remembers for friction in self.frictions.values())
+        return bool(self.sticking)
 
     def begin(self, vector: Array) -> None:
         """Let a stroke begin where another has ended: slip is counted from that state."""
         state = self.problem.state.vec.FV().NumPy()
         keep = state.copy()
         state[:] = vector
-        for friction in self.frictions.values():
-            if friction.remembers:
-                friction.begin()
+        for friction in self.sticking.values():
+            friction.begin()
         state[:] = keep
 
     def shares(self, stroke: Stroke) -> dict[str, Array]:
         """What the contact's nodes slip in the stroke just solved over its travel [-], of each friction that sticks."""
-        sticking = {name: f for name, f in self.frictions.items() if f.remembers}
-        return {name: self.contacts[name].edges_to_nodes(f.slid()) / stroke.travel for name, f in sticking.items()}
+        ways = {name: friction.slid() for name, friction in self.sticking.items()}
+        return {name: self.contacts[name].edges_to_nodes(way) / stroke.travel for name, way in ways.items()}
 
     def set_shares(self, shares: dict[str, Array] | None) -> None:
         """Let wear in the next solve follow these shares; everything slips where none are known."""
@@ -214,7 +229,7 @@ class Stage:
         here = spec.surface.gap(x, y)
         first = int(here.argmin())
         beside = here[max(first - 1, 0) : first + 2]
-        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.mounting)
+        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.lengths.mounting)
         bite += 1e-6 * float(contour.lengths.min())
         travel, reach = 0.0, 10.0 * float(np.ptp(contour.points, axis=0).max())
         for _ in range(500):  # the gap is a distance: so far the surface can go without passing the place
@@ -249,7 +264,7 @@ class Stage:
 
     def margins(self) -> dict[str, float]:
         """How far each contact that slides in full is from waves that grow along it [-], see ``Ripples.margin``."""
-        return {name: f.margin() for name, f in self.frictions.items() if not f.remembers}
+        return {name: friction.margin() for name, friction in self.sliding.items()}
 
     def forces(self) -> dict[str, Array]:
         """Resultants on the part in the present state, (x, y) [N, or N/mm in plane strain].

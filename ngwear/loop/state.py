@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,6 +15,7 @@ from ngwear.equilibrium.stepping import Work
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.outline import Outline
 from ngwear.loop.stage import Stage
+from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 from ngwear.wear.jump_control import JumpControl
 
@@ -27,6 +28,29 @@ Array = NDArray[np.float64]
 FALLS = 1.7  # change of the rate of depth over a step, whose square counts as an error: see depth_ratio
 
 
+@dataclass(frozen=True)
+class LastWear:
+    """What a stroke of the cycle wore the last time; arrays of shape (contacts, n) are of the outline's points.
+
+    Attributes
+    ----------
+    pressure : array, shape (contacts, n)
+        Depth over way that each contact would wear with its pressure at the end of the last time and the highest wear
+        rate, ``k P / J`` [-]. Depths, not areas: a sharp lip's points come closer as it wears.
+    mean : array, shape (contacts, n)
+        The same of what the last time wore over its way, ``ways`` [-].
+    area : array, shape (contacts,)
+        Area over way that the last time wore [mm].
+    ways : array, shape (contacts,)
+        [mm].
+    """
+
+    pressure: Array
+    mean: Array
+    area: Array
+    ways: Array
+
+
 @dataclass
 class Phase:
     """What is kept of one stroke of the cycle, for the same stroke of the next one.
@@ -37,13 +61,7 @@ class Phase:
         Equilibrium of the last time.
     rate : array or None
         Its change per cycle, on the same mesh.
-    pressure : array, shape (contacts, n)
-        Depth over way that each contact would wear at the contour points with its pressure at the end of the last time
-        and the highest wear rate, ``k P / J`` [-]. Depths, not areas: a sharp lip's points come closer as it wears.
-    mean : array, shape (contacts, n), or None
-        The same of what the last time wore over its way, ``ways`` [-].
-    area : array, shape (contacts,), or None
-        Area over way that the last time wore [mm].
+    worn : LastWear or None
     error : float
         Of what the last time wore, relative [-]; infinite if it is not known.
     shares : dict of str to array, or None
@@ -52,10 +70,7 @@ class Phase:
 
     vector: Array
     rate: Array | None = None
-    pressure: Array | None = None
-    mean: Array | None = None
-    area: Array | None = None
-    ways: Array | None = None
+    worn: LastWear | None = None
     error: float = math.inf
     shares: dict[str, Array] | None = None
 
@@ -130,7 +145,7 @@ class State:
 
     ``depths``, shape (2, n), are the depth worn at the points of the outline and the sum of what its steps err by, with
     their signs [mm]. ``fatigue`` and ``strained`` are what each element has used up of its life, and what the present
-    cycle uses up so far [-], of a scene whose damage adds up over cycles.
+    cycle uses up so far [-], of a scene whose damage adds up over cycles; else they are empty.
     """
 
     stage: Stage
@@ -143,8 +158,8 @@ class State:
     counters: dict[str, WornProfile] = field(default_factory=dict)
     memory: CycleMemory | None = None
     reports: list[StrokeReport] = field(default_factory=list)
-    fatigue: Array | None = None
-    strained: Array | None = None
+    fatigue: Array = field(default_factory=lambda: np.empty(0))
+    strained: Array = field(default_factory=lambda: np.empty(0))
     across: float | None = None
 
     @property
@@ -152,14 +167,18 @@ class State:
         """Where the memory lives, if the rubber has one."""
         return None if self.memory is None else self.memory.background
 
-    def __getstate__(self) -> dict[str, Any]:
-        saved = dict(self.__dict__)
-        saved["stage"] = (self.stage.scene, self.stage.body)
-        return saved
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same state of, to the last bit; of the scene only what a run changes."""
+        data = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "stage"}
+        return data | {"accuracy": self.stage.scene.accuracy, "body": self.stage.body}
 
-    def __setstate__(self, saved: dict[str, Any]) -> None:
-        self.__dict__.update(saved)
-        self.stage = Stage(*saved["stage"], self.background)
+    @classmethod
+    def from_data(cls, data: dict[str, Any], scene: Scene) -> State:
+        """The state again, of a run of the same scene."""
+        there = replace(scene, accuracy=data["accuracy"])
+        memory: CycleMemory | None = data["memory"]
+        stage = Stage(there, data["body"], None if memory is None else memory.background)
+        return cls(stage, **{f.name: data[f.name] for f in fields(cls) if f.name != "stage"})
 
     def saved(self) -> dict[str, Any]:
         """What ``take_back`` needs, should a step fail."""
@@ -232,6 +251,8 @@ class StrokeReport:
         Elements after the stroke's wear, where a scene deactivates some.
     loaded : dict of str to array
         Displacement of their points and stresses in them at equilibrium, likewise.
+    section : dict of str to array
+        The loaded section (``ngwear.loop.section_snapshot``) at strokes that are kept, else empty.
     """
 
     phase: int
@@ -251,3 +272,4 @@ class StrokeReport:
     ledger: Ledger
     cells: Cells | None = None
     loaded: dict[str, Array] = field(default_factory=dict)
+    section: dict[str, NDArray[np.generic]] = field(default_factory=dict)

@@ -20,9 +20,11 @@ from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.loop.refinement import outgrown, wanted_size
 from ngwear.loop.remeshing import is_due, remesh, still_ahead
+from ngwear.loop.section_snapshot import section_snapshot
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.wear_step import Wearing
+from ngwear.materials import PronySeries
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.wear.cycle_jumps import Plan, planned
@@ -84,10 +86,12 @@ class Stepper:
         scene, accuracy = self.scene, self.scene.accuracy
         stage = Stage(scene, unworn_body(scene, self._across))
         cycles = scene.program.strokes / len(scene.program.cycle)
-        most = scene.wear.max_jump or math.inf
-        longest = min(most, max(1, math.ceil(accuracy.longest_jump * cycles)))
+        tolerances = accuracy.tolerances
+        longest = max(1, math.ceil(tolerances.longest_jump * cycles))
+        if scene.wear.max_jump is not None:
+            longest = min(scene.wear.max_jump, longest)
         first = 1 if scene.deactivation is not None else max(1, longest // FIRST)  # what is pulled too hard tears
-        control = JumpControl(accuracy.wear_error, depth=accuracy.depth_error, cycles=first, longest=longest)
+        control = JumpControl(tolerances.wear_error, depth=tolerances.depth_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         problem = stage.problem
@@ -105,8 +109,9 @@ class Stepper:
             self._refine(state)
         else:
             self._settle_cycle(state)
-        if scene.arms is not None:
-            self._remember(state)
+        arms = scene.arms
+        if arms is not None:
+            self._remember(state, arms)
         self.on_mount(1.0)
         return state
 
@@ -118,7 +123,7 @@ class Stepper:
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting's mesh may be too fine, too
             if state.across is not None:
                 state.stage.scene = chosen(state.stage, vectors, state.across)
-            narrow = state.stage.scene.accuracy.patch < NARROWER * laid.accuracy.patch
+            narrow = state.stage.scene.accuracy.lengths.patch < NARROWER * laid.accuracy.lengths.patch
             if not (first or narrow or outgrown(state.stage, vectors, **ahead)):
                 state.stage.scene = laid
                 break
@@ -137,7 +142,7 @@ class Stepper:
             wearing.look()
             state.reports.append(self._observe(state, i, iterations, sliding))
 
-    def _remember(self, state: State) -> None:
+    def _remember(self, state: State, arms: PronySeries) -> None:
         """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
         from ngwear.fields.background_mesh import Background
         from ngwear.loop.memory_over_cycles import CycleMemory
@@ -155,8 +160,9 @@ class Stepper:
             term.refresh()
         state.work.add(advance(stage.problem, stage.mounted_loads()))
         durations = [stroke.duration for stroke in scene.program.cycle]
-        mounted = stage.memory.stress()
-        state.memory = CycleMemory(background, scene.arms, durations, mounted=mounted, rest=scene.program.rest)
+        if stage.memory is not None:
+            mounted = stage.memory.stress()
+            state.memory = CycleMemory(background, arms, durations, mounted=mounted, rest=scene.program.rest)
 
     def finished(self, state: State) -> bool:
         """Whether all strokes of the program are done."""
@@ -172,7 +178,7 @@ class Stepper:
         ConvergenceError, GeometryError, MeshError
             When a single cycle fails; the state is the last accepted one.
         """
-        program, most = self.scene.program, math.inf
+        program, most = self.scene.program, self.scene.program.strokes
         while True:
             goal = min([m for m in self.scene.marks if m > state.strokes] + [program.strokes])
             left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
@@ -195,7 +201,7 @@ class Stepper:
             share = (state.strokes - saved["strokes"]) / program.strokes
             off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)
             state.control.update(ratio, cycles, off)
-            if state.strokes in (*self.scene.marks, program.strokes):
+            if state.strokes in self.scene.kept:
                 self._look(state)
             return state
 
@@ -209,12 +215,28 @@ class Stepper:
                 state.phases[i] = saved
         self.stand(state)
 
+    def sections(self, state: State) -> list[dict[str, NDArray[np.generic]]]:
+        """The loaded section of each stroke of the cycle on the present outline; changes nothing but the work done.
+
+        Raises
+        ------
+        ConvergenceError
+            If a stroke has no equilibrium there.
+        """
+        found, plan = [], self._next_cycle(state)
+        for i, saved in enumerate(list(state.phases)):
+            self._seen(state, i, plan)
+            state.phases[i] = saved
+            found.append(section_snapshot(state.stage))
+        self.stand(state)
+        return found
+
     def look_ahead(self, state: State) -> list[StrokeReport]:
         """Solve the next cycle's strokes on the present outline, in their order; state and memory are theirs then."""
         plan, reports = self._next_cycle(state), []
         for i, _ in plan:
             reports.append(self._seen(state, i, plan))
-            if state.memory is not None:
+            if state.memory is not None and state.stage.memory is not None:
                 state.memory.leave(state.stage.memory, i)
         return reports
 
@@ -260,7 +282,7 @@ class Stepper:
                     return math.inf
                 if tears:
                     outline, state.ledger.late = state.contour, max(state.ledger.late, repeats - 1)
-            if memory is not None:
+            if memory is not None and state.stage.memory is not None:
                 memory.leave(state.stage.memory, i)
             seen = self._observe(state, i, iterations, sliding)
             state.strokes += repeats
@@ -320,11 +342,11 @@ class Stepper:
             from ngwear.loop import counter_surface
 
             counter_surface.place(stage, state.counters, index, sliding)
-        if state.memory is not None:
+        if state.memory is not None and stage.memory is not None:
             state.memory.enter(stage.memory, plan, index)
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
         work = Work()
-        guesses = [before] if fresh else [before + repeats * phase.rate, before]
+        guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
         for guess in guesses:
             self._guess(state, guess)
             for term in problem.terms:
@@ -349,6 +371,7 @@ class Stepper:
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """What there is to see at the stroke's equilibrium."""
         stage = state.stage
+        kept = state.strokes + sliding.repeats in self.scene.kept
         return StrokeReport(
             phase=index,
             last_stroke=state.strokes,
@@ -362,11 +385,12 @@ class Stepper:
             wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
             counters=state.counters,
             leaks=stage.fluid is not None and stage.fluid.leaks,
-            leak_pressure=stage.fluid.leak_pressure() if stage.fluid and self.scene.fluid.leak_pressure else None,
+            leak_pressure=None if stage.leaking is None else stage.leaking.leak_pressure(),
             contour=state.contour,
             ledger=state.ledger.copy(),
             cells=state.cells,
             loaded={} if self._losses is None else self._losses.loaded(stage),
+            section=section_snapshot(stage) if kept else {},
         )
 
     def _approach(self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool) -> None:

@@ -66,7 +66,7 @@ def in_halves(state: State) -> State:
     stage.scene = replace(stage.scene, accuracy=replace(accuracy, parts=2 * accuracy.parts))
     there.stage, there.strokes = stage, 2 * state.strokes
     there.phases = [phase for phase in state.phases for _ in range(2)]
-    there.memory = state.memory.in_halves()
+    there.memory = None if state.memory is None else state.memory.in_halves()
     return there
 
 
@@ -87,7 +87,8 @@ def _deepest(state: State) -> tuple[str, slice] | None:
 
 def _read(state: State, deepest: tuple[str, slice] | None) -> Read:
     """Means over each stroke that was given, and loads over ways of the cycle, which wear."""
-    scene, out = state.stage.scene, {}
+    scene = state.stage.scene
+    out: Read = {}
     cycle = scene.program.cycle
     for kind in dict.fromkeys(whole_name(stroke.name) for stroke in cycle):
         mine = [report for report in state.reports if whole_name(cycle[report.phase].name) == kind]
@@ -96,7 +97,8 @@ def _read(state: State, deepest: tuple[str, slice] | None) -> Read:
         for name in (name for name in mine[0].forces if name.endswith("friction")):
             out.setdefault(FRICTION, {})[f"{kind}: {name}"] = np.mean([report.forces[name] for report in mine], axis=0)
     for name in (spec.name for spec in scene.contacts if spec.wears):
-        loads = sum(cycle[report.phase].travel * report.contacts[name].load for report in state.reports)
+        parts = (cycle[report.phase].travel * report.contacts[name].load for report in state.reports)
+        loads = sum(parts, np.zeros(()))
         out.setdefault(AREA, {})[name] = loads.sum()
         if deepest is not None and name == deepest[0]:
             out[DEPTH] = {name: loads[deepest[1]].sum()}

@@ -233,10 +233,11 @@ def fit_wlf(curves: Sequence[Dma], *, reference: float) -> ShiftFit:
     reference : float
         T_r [K].
     """
-    if any(c.temperature is None for c in curves):
+    known = sorted(((c.temperature, c) for c in curves if c.temperature is not None), key=lambda pair: pair[0])
+    if len(known) < len(curves):
         raise SceneError("temperature", None, "every curve needs its temperature [K]")
-    ordered = sorted(curves, key=lambda c: c.temperature)
-    temperatures = np.array([c.temperature for c in ordered])
+    ordered = [c for _, c in known]
+    temperatures = np.array([temperature for temperature, _ in known])
     home = int(np.argmin(np.abs(temperatures - reference)))
     if abs(temperatures[home] - reference) > 0.5 or len(set(temperatures.tolist())) < 3:
         raise SceneError(

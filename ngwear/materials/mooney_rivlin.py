@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.materials.base import Hyperelastic
 
 
@@ -36,6 +36,7 @@ class MooneyRivlin(Hyperelastic):
     c01: float
 
     def __post_init__(self) -> None:
+        check_fields(self, "material")
         self._require_positive(c10=self.c10, bulk_modulus=self.bulk_modulus)
         if not 0 <= self.c01 < math.inf:
             raise SceneError("material.c01", self.c01, "must be at least 0 MPa; for C01 = 0 use neo-hooke")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.materials.base import Hyperelastic
 
 
@@ -32,6 +32,7 @@ class NeoHooke(Hyperelastic):
     shear: float
 
     def __post_init__(self) -> None:
+        check_fields(self, "material")
         self._require_positive(shear=self.shear, bulk_modulus=self.bulk_modulus)
 
     @classmethod

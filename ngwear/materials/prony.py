@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 
 Array = NDArray[np.float64]
 MOST_ARMS = 40
@@ -49,6 +49,7 @@ class PronySeries:
     times: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        check_fields(self, "material.prony")
         if len(self.ratios) != len(self.times):
             raise SceneError("material.prony", (len(self.ratios), len(self.times)), "give one modulus for each time")
         if len(self.times) > MOST_ARMS:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 
 GAS_CONSTANT = 8.31446261815324  # J/(mol K)
 MOST_DECADES = 30.0  # of a shift: beyond the whole of the glass transition
@@ -32,6 +32,7 @@ class WLF:
     reference: float
 
     def __post_init__(self) -> None:
+        check_fields(self, "material.prony.shift")
         for name, value in (("c1", self.c1), ("c2", self.c2), ("reference", self.reference)):
             if not 0 < value < math.inf:
                 raise SceneError(f"material.shift.{name}", value, "must be finite and greater than 0")
@@ -85,6 +86,7 @@ class Arrhenius:
     reference: float
 
     def __post_init__(self) -> None:
+        check_fields(self, "material.prony.shift")
         for name, value in (("activation_energy", self.activation_energy), ("reference", self.reference)):
             if not 0 < value < math.inf:
                 raise SceneError(f"material.shift.{name}", value, "must be finite and greater than 0")

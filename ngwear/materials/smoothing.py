@@ -64,7 +64,7 @@ class _Fit:
 
     def __init__(self, series: PronySeries, times: Array) -> None:
         ends = -np.log10(2 * np.pi * np.array([series.times[-1], series.times[0]]))
-        f = np.logspace(*ends, round(SAMPLES * np.ptp(ends)))
+        f = np.logspace(ends[0], ends[1], round(SAMPLES * np.ptp(ends)))
         x = 2 * np.pi * f[:, None] * times
         storage, loss = series.storage(f), series.loss(f)
         matrix = np.vstack([x**2 / (1 + x * x) / storage[:, None], x / (1 + x * x) / loss[:, None]])

@@ -18,9 +18,14 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import ResultError, SceneError
+from ngwear.files.archive import Format, packed, read, write
+from ngwear.files.plain_data import by_name
 from ngwear.files.result_folder import OutFolder
+from ngwear.files.version import VERSION
 from ngwear.parallel.workers import one_thread_pool
 
+FORMAT = Format("result of a sweep", 2, "delete it to compute it anew")  # 1: a pickle
+ENDING, OLD = ".npz", ".pickle"
 IMPORTABLE = "define it at the top of a module; functools.partial(function, fixed) keeps arguments that do not vary"
 
 
@@ -72,6 +77,7 @@ def sweep(
     folder: Path | str | None = None,
     resume: bool = False,
     progress: bool = False,
+    classes: Iterable[type] = (),
 ) -> list[Outcome]:
     """Evaluate ``function(point)`` at each point; outcomes in the order of the points.
 
@@ -81,7 +87,8 @@ def sweep(
     Parameters
     ----------
     function : callable
-        Of one point. For processes it must be importable, and what it returns must pickle.
+        Of one point. For processes it must be importable, and what it returns must pickle. For a folder it must return
+        numbers, text, lists, tuples, dicts, NumPy arrays, or dataclasses of these that are among ``classes``.
     points : iterable
     executor : concurrent.futures.Executor or None
         Any, such as a Dask client's ``client.get_executor()``; it is left open. By default spawned processes of
@@ -95,22 +102,24 @@ def sweep(
         code are not seen) finished there; what failed is tried again.
     progress : bool
         Show a progress bar.
+    classes : iterable of type
+        The dataclasses and enumerations that results are made of: nothing else is made of what a folder's files hold.
 
     Raises
     ------
     SceneError
         If there are no points, or function or a point cannot be sent to a process or told from another.
     ResultError
-        If the folder cannot be used.
+        If the folder cannot be used, or a file in it not be read.
     """
-    points = list(points)
+    points, classes = list(points), tuple(classes)
     _check(points, executor, workers, folder, resume)
+    _check_classes(classes)
     own = executor is None
     if own:
         _check_importable(function)
-    if own or folder is not None:
-        keys = [_digest(function, point) for point in points]
-    store = None if folder is None else _Store(Path(folder))
+    keys = [_digest(function, point) for point in points] if own or folder is not None else []
+    store = None if folder is None else _Store(Path(folder), classes, resume=resume)
     outcomes: list[Outcome | None] = [None] * len(points)
     if store is not None and resume:
         outcomes = [store.load(key, point) for key, point in zip(keys, points, strict=True)]
@@ -124,12 +133,12 @@ def sweep(
             outcomes[i] = Outcome(points[i], failure=result) if failed else Outcome(points[i], result)
             step()
 
-        if own:
+        if executor is None:
             _in_processes(function, points, waiting, workers or os.cpu_count() or 1, keep)
         else:
             for i, error in _feed(executor, function, points, deque(waiting), len(points), keep):
                 keep(i, Failure.of(error))
-    return outcomes
+    return [outcome for outcome in outcomes if outcome is not None]
 
 
 def _attempt(function: Callable[[Any], Any], point: Any) -> Any:
@@ -157,8 +166,8 @@ def _feed(
             i = waiting.popleft()
             try:
                 running[executor.submit(_attempt, function, points[i])] = i
-            except BrokenExecutor as error:
-                lost.append((i, error))
+            except BrokenExecutor as broken:
+                lost.append((i, broken))
         done, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
             i, error = running.pop(future), future.exception()
@@ -182,27 +191,32 @@ def _in_processes(function: Any, points: list, waiting: Iterable[int], workers: 
 
 
 class _Store:
-    """Results in a folder, one pickle a point, each written at once and whole."""
+    """Results in a folder, one file a point, each written at once and whole."""
 
-    def __init__(self, path: Path) -> None:
-        self.folder = OutFolder(path, "", resume=True)
+    def __init__(self, path: Path, classes: tuple[type, ...], *, resume: bool) -> None:
+        self.folder, self.classes = OutFolder(path, "", resume=True), classes
+        if resume and (old := next(path.glob(f"*{OLD}"), None)) is not None:
+            raise ResultError(
+                f"{old} holds a result of ngwear 0.1; this is ngwear {VERSION}, which cannot read it: delete such "
+                "files to compute them anew, give another folder, or take ngwear 0.1"
+            )
 
     def load(self, key: str, point: Any) -> Outcome | None:
-        file = self.folder.path / f"{key}.pickle"
+        file = self.folder.path / f"{key}{ENDING}"
         if not file.exists():
             return None
         try:
-            return Outcome(point, pickle.loads(file.read_bytes()), restored=True)
-        except Exception as error:  # what unpickling raises depends on what was pickled
-            raise ResultError(f"{file} of the point {point!r} cannot be read ({error}): delete it") from error
+            return Outcome(point, read(file, FORMAT, self.classes), restored=True)
+        except ResultError as error:
+            raise ResultError(f"the result of the point {point!r} is lost: {error}") from error
 
     def save(self, key: str, result: Any) -> Any:
         """The result, or the failure to write it."""
         try:
-            data = pickle.dumps(result)
-        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            members = packed(result, FORMAT, self.classes)
+        except ResultError as error:
             return Failure.of(error)
-        self.folder.replace(f"{key}.pickle", lambda file: file.write(data))
+        self.folder.replace(f"{key}{ENDING}", lambda file: write(file, members))
         return result
 
 
@@ -228,6 +242,13 @@ def _check(points: list, executor: Any, workers: Any, folder: Any, resume: bool)
         raise SceneError("sweep.workers", workers, "an executor has its own workers: give one or the other")
     if resume and folder is None:
         raise SceneError("sweep.resume", resume, "needs the folder of the earlier sweep")
+
+
+def _check_classes(classes: tuple[type, ...]) -> None:
+    try:
+        by_name(classes)
+    except TypeError as error:
+        raise SceneError("sweep.classes", classes, str(error)) from None
 
 
 def _check_importable(function: Any) -> None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import pickle
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -29,7 +31,7 @@ class Worker:
     def __init__(self, *modules: str) -> None:
         self._pipe, its = Pipe()
         self._owing, self._failed = 0, False
-        with one_thread():
+        with one_thread(), _without_script():
             self._process = get_context("spawn").Process(target=_work, args=(its, modules), daemon=True)
             self._process.start()
         its.close()
@@ -90,6 +92,29 @@ def _work(pipe: Connection, modules: tuple[str, ...]) -> None:
 
 
 @contextmanager
+def _without_script() -> Iterator[None]:
+    """Let a process that begins within not run this one's script again: it is told functions of modules only."""
+    script = sys.modules["__main__"]
+    before = {name: getattr(script, name) for name in ("__file__", "__spec__") if hasattr(script, name)}
+    script.__spec__ = None
+    if "__file__" in before:
+        del script.__file__
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            setattr(script, name, value)
+
+
+def of_modules(value: object) -> bool:
+    """Whether another process can be sent a value: none of its classes stands in this process's script."""
+    try:
+        return b"__main__" not in pickle.dumps(value)
+    except (pickle.PicklingError, AttributeError, TypeError):
+        return False
+
+
+@contextmanager
 def one_thread_pool(workers: int) -> Iterator[Executor]:
     """Spawned workers of one thread each."""
     from concurrent.futures import ProcessPoolExecutor
@@ -125,6 +150,8 @@ def end_with_parent() -> None:
 
     tqdm.set_lock(threading.RLock())
     parent = parent_process()
+    if parent is None:
+        return
 
     def watch() -> None:
         parent.join()

@@ -11,13 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files.result_folder import get_series
+from ngwear.files.hdf5 import get_series, require_layout, stored_name
 from ngwear.plots.style import write
 from ngwear.scene.pin_scene import KIND
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D
 
 Array = NDArray[np.float64]
 WHOLE, SURFACE, INTERNAL = "#222222", "#1b6ca8", "#d1495b"
@@ -65,19 +67,20 @@ def read_pin(folder: Path | str) -> PinFile:
     Raises
     ------
     ResultError
-        If the file is missing or damaged.
+        If the file is missing, damaged, or of another layout.
     """
     import h5py
 
     file = Path(folder) / "result.h5"
     try:
         with h5py.File(file, "r") as h5:
+            require_layout(h5, file)
             series = get_series(h5)
             order = np.argsort(series["speed [mm/s]"])
             groups = [h5[f"speeds/{k:03d}"] for k in order]
             sheets = [
                 SheetPicture(
-                    float(g.attrs["speed [mm/s]"]),
+                    float(g.attrs[stored_name("speed [mm/s]")]),
                     g["edge of the contact [mm]"][()],
                     g["faces/corners, deformed [mm]"][()],
                     g["faces/pressure [MPa]"][()],
@@ -155,8 +158,8 @@ def contact_figure(result: PinFile) -> Figure:
     left.set_xlabel("sliding speed [mm/s]")
     left.set_ylabel("penetration [mm]", color=SURFACE)
     right.set_ylabel("contact area [mm²]", color=INTERNAL)
-    left.set_ylim(0, 1.25 * depth.get_ydata().max())
-    right.set_ylim(0, 1.6 * area.get_ydata().max())
+    left.set_ylim(0, 1.25 * series["penetration [mm]"].max())
+    right.set_ylim(0, 1.6 * series["contact area [mm²]"].max())
     left.grid(alpha=0.3, which="both")
     left.legend([depth, area], ["penetration", "contact area"], loc="lower left")
     return figure
@@ -181,7 +184,7 @@ def sheet_figure(result: PinFile, number: int) -> Figure:
     return figure
 
 
-def _draw_surface(axis: Axes, sheet: SheetPicture, thickness: float, colours: object) -> None:
+def _draw_surface(axis: Axes3D, sheet: SheetPicture, thickness: float, colours: ScalarMappable) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     reach = np.ptp(sheet.edge[:, 0])
@@ -201,11 +204,11 @@ def _draw_surface(axis: Axes, sheet: SheetPicture, thickness: float, colours: ob
     axis.set_zlabel("z [mm]")
 
 
-def _draw_patch(axis: Axes, sheet: SheetPicture, colours: object) -> None:
+def _draw_patch(axis: Axes, sheet: SheetPicture, colours: ScalarMappable) -> None:
     from matplotlib.collections import PolyCollection
 
-    patch = PolyCollection(sheet.corners[sheet.loaded][..., :2], edgecolors="face", linewidths=0.2)
-    patch.set_facecolor(colours.to_rgba(sheet.pressure[sheet.loaded]))
+    patch = PolyCollection(list(sheet.corners[sheet.loaded][..., :2]), edgecolors="face", linewidths=0.2)
+    patch.set_facecolor(list(colours.to_rgba(sheet.pressure[sheet.loaded])))
     axis.add_collection(patch)
     edge = np.vstack([sheet.edge, sheet.edge[:1]])
     axis.plot(*edge.T, color="#d1495b", lw=1.5, label="contact's edge")

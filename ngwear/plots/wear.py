@@ -13,12 +13,15 @@ from ngwear.errors import ResultError
 from ngwear.plots.area_balance import book_figure, has_book
 from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.laws import has_laws, law_figure
-from ngwear.plots.sections import box, draw_planes, living, sections, show
+from ngwear.plots.loaded_section import SECTION, draw_section, section_figure
+from ngwear.plots.sections import sections
 from ngwear.plots.stress import stress_figure
 from ngwear.plots.style import COLOURS, new_figure, write
 from ngwear.plots.torn import face_figure, ridge_figure
 from ngwear.profiles.worn_edge import STATIONS, seen, view
+from ngwear.results.kept_sections import KeptSections
 from ngwear.results.result_file import ResultFile, Snapshot, read_result
+from ngwear.results.section import VON_MISES, named
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,22 +29,18 @@ if TYPE_CHECKING:
 
 Array = NDArray[np.float64]
 
-MESH = "mesh.png"
-MARGIN = 0.1  # mm, around the part
 HISTORIES = ("peak pressure [MPa]", "contact width [mm]", "leak pressure [MPa]")  # columns that end so
 COMPANIONS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run with a companion states
 
 
-def plot(folder: Path | str, *, again: bool = True, share: tuple[int, int] = (0, 1)) -> list[Path]:
+def plot(folder: Path | str, *, share: tuple[int, int] = (0, 1)) -> list[Path]:
     """Draw the figures of a run into its folder; return their paths.
 
     Parameters
     ----------
     folder : path
-    again : bool
-        Draw the mesh, too, if its picture is there.
     share : (k, n)
-        Draw what falls to the k-th of n processes that draw at the same time; the mesh falls to the first, 0.
+        Draw what falls to the k-th of n processes that draw at the same time; the section falls to the first, 0.
 
     Raises
     ------
@@ -51,7 +50,8 @@ def plot(folder: Path | str, *, again: bool = True, share: tuple[int, int] = (0,
     result = read_result(folder)
     if not result.snapshots:
         return []
-    figures = {"profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
+    figures = {"section": section_figure} if KeptSections.of(result) else {}
+    figures |= {"profiles": profile_figure, "peak_pressure": peak_figure, "history": history_figure}
     if has_laws(result):
         figures["laws"] = law_figure
     if worn_counters(result):
@@ -65,8 +65,6 @@ def plot(folder: Path | str, *, again: bool = True, share: tuple[int, int] = (0,
         figures["material_book"] = book_figure
     mine, of = share
     chosen = dict(list(figures.items())[mine::of])
-    if mine == 0 and (again or not (Path(folder) / MESH).is_file()):
-        chosen["mesh"] = mesh_figure
     written = []
     with _style():
         for name, draw in chosen.items():
@@ -80,23 +78,30 @@ def plot(folder: Path | str, *, again: bool = True, share: tuple[int, int] = (0,
     return written
 
 
-def plot_mesh(folder: Path, scene: str, first: Snapshot) -> None:
-    """Draw the mesh alone, of a run that is under way.
+def plot_section(folder: Path | str, kept: KeptSections | None = None, *, field: str = VON_MISES) -> Path:
+    """Draw the loaded section alone; return the path: ``section.png``, of another field with its name.
 
     Parameters
     ----------
-    folder : Path
-    scene : str
-        Name.
-    first : Snapshot
+    folder : path
+    kept : KeptSections or None
+        Of a run that is under way; read from the folder unless given.
+    field : str
+        See ``ngwear.results.section.FIELDS``.
 
     Raises
     ------
     ResultError
-        If the picture cannot be written.
+        If the field is not known, the result cannot be read, holds no section, or the picture cannot be written.
     """
+    field = named(field)
+    kept = KeptSections.of(read_result(folder)) if kept is None else kept
+    path = Path(folder) / SECTION
+    if field != VON_MISES:
+        path = path.with_stem(f"{path.stem}_{field.rsplit(' [', 1)[0].replace(' ', '_')}")
     with _style():
-        write(_mesh(scene, first), folder / MESH)
+        write(draw_section(kept, field=field), path)
+    return path
 
 
 def _style() -> AbstractContextManager[None]:
@@ -112,33 +117,6 @@ def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
         order = np.argsort(place[:, 0])
         axes.plot(place[order, 0], p[order], label=label, **style)
         label = None
-
-
-def mesh_figure(result: ResultFile) -> Figure:
-    """Deformed mesh at the first stroke of the cycle, over its contact pressure."""
-    return _mesh(result.scene, result.snapshots[0])
-
-
-def _mesh(scene: str, first: Snapshot) -> Figure:
-    from matplotlib.collections import PolyCollection
-
-    points = first.mesh.get("points [mm]", first.outline)
-    wide, high = np.ptp(points, axis=0) + 2 * MARGIN
-    upper_share = 4 * min(max(high / wide, 0.2), 1.1)
-    figure, (upper, lower) = new_figure(2, (upper_share, 1), size=(8, 2.0 * (upper_share + 1) + 0.5))
-    if first.elements:
-        shapes, _ = living(first, deformed=True)
-        upper.add_collection(PolyCollection(shapes, facecolor="none", edgecolor=COLOURS[0], lw=0.3))
-    elif first.mesh:
-        upper.triplot(points[:, 0], points[:, 1], first.mesh["triangles"], lw=0.3, color=COLOURS[0])
-    draw_planes(upper, first, 0.12)
-    show(upper, box(points, MARGIN))
-    upper.set_ylabel("y [mm]")
-    upper.set_title(f"{scene}: first {first.kind} stroke")
-    _pressure(lower, first, color=COLOURS[1], lw=1.2)
-    lower.set_ylabel("contact pressure [MPa]")
-    lower.set_xlabel("x [mm]")
-    return figure
 
 
 def _window(result: ResultFile, margin: float = 0.15) -> tuple[float, float]:

@@ -116,7 +116,8 @@ def fit_wear_law(folder: Path | str, comparison: Comparison, family: str = "powe
 
 def _pressures(result: ResultFile, axis: int, place: Array, slid: float) -> tuple[Array, Array, Array]:
     """Ways [mm], shape (n,), and pressures at the places over them, nominal and Cauchy, of shape (n, m) [MPa]."""
-    ways, pairs, last, before = [], [], {}, 0.0
+    last: dict[str, Array] = {}
+    ways, pairs, before = [], [], 0.0
     for distance, snapshot in zip(result.series["sliding distance [mm]"], result.snapshots, strict=True):
         now = _at(snapshot.profiles, result.wear_rates, axis, place)
         way = min(float(distance), slid) - min(before, slid)

@@ -1,24 +1,28 @@
-"""What a run leaves on disk: series.csv, result.h5, summary.json and a checkpoint to go on from."""
+"""What a run leaves on disk: series.csv, result.h5, summary.json."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import pickle
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear import __version__
-from ngwear.errors import ResultError
-from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder, peak_memory, put_series
+from ngwear.files.hdf5 import mark, put, put_series, subgroup, write
+from ngwear.files.peak_memory import peak_memory
+from ngwear.files.result_folder import CHECKPOINT, FIELDS, SUMMARY, OutFolder
+from ngwear.files.subnormal import without_subnormals
+from ngwear.files.version import VERSION
 from ngwear.geometry.cells import Fate
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import divided
-from ngwear.results.result_file import Snapshot
+from ngwear.results.kept_sections import KeptSections
+from ngwear.results.result_file import CONTACT, PART, WEAR_RATE, Snapshot
+from ngwear.results.surface_text import surface_text
 from ngwear.scene.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
 
@@ -70,22 +74,30 @@ class Recorder:
     unworn: Outline | None = None
     unworn_area: float = 0.0
 
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same records of: all but the scene."""
+        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "scene"}
+
+    @classmethod
+    def from_data(cls, data: dict[str, Any], scene: Scene) -> Recorder:
+        """The records again, of a run of the same scene."""
+        return cls(scene, **data)
+
     def add(self, state: Any, *, wall: float) -> None:
         """Add the strokes of the state's last step."""
         if self.unworn is None:
             plain = state.cells is None
             self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
-        for number, report in enumerate(state.reports):
-            self.rows.append(self._row(state, report, wall))
-            mesh = _deformed_mesh(state, report.phase) if report.last_stroke == 0 and number == 0 else {}
-            self.snapshots.append(self._snapshot(report, mesh))
+        for report in state.reports:
+            self.rows.append(self._row(state, report, wall, self.unworn))
+            self.snapshots.append(self._snapshot(report))
 
-    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+    def _row(self, state: Any, report: Any, wall: float, unworn: Outline) -> dict[str, Any]:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
-        depth = depths(self.unworn, report.contour)
+        depth = depths(unworn, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
             "stroke [-]": scene.program.counted(report.last_stroke),
@@ -99,7 +111,7 @@ class Recorder:
             "error estimate of maximum depth [mm]": abs(ledger.depth_error),
         }
         for name in dict.fromkeys(scene.worn_edges):
-            row[f"depth at {name} [mm]"] = float(depth[self.unworn.on((name,))].max())
+            row[f"depth at {name} [mm]"] = float(depth[unworn.on((name,))].max())
         if report.cells is not None:
             row |= self._book(report)
         for contact, profile in report.contacts.items():
@@ -145,7 +157,7 @@ class Recorder:
         out["elements worn away [-]"] = int(counts[Fate.WORN])
         return out
 
-    def _snapshot(self, report: Any, mesh: dict[str, Array]) -> Snapshot:
+    def _snapshot(self, report: Any) -> Snapshot:
         profiles = {
             name: {
                 "reference [mm]": p.reference,
@@ -161,11 +173,24 @@ class Recorder:
             profiles[name]["counter-surface depth [mm]"] = counter.depth
         kind = self.scene.program.cycle[report.phase].name
         last, elements = report.last_stroke, {}
-        if report.cells is not None and last in (0, *self.scene.marks, self.scene.program.strokes):
+        if report.cells is not None and last in self.scene.kept:
             cells = report.cells
             elements = {"points [mm]": cells.points, "corners": cells.corners, "fate": cells.fate} | report.loaded
         stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
-        return Snapshot(stroke, kind, report.contour.points, profiles, mesh, elements, time)
+        return Snapshot(stroke, kind, report.contour.points, profiles, report.section, elements, time)
+
+    def add_sections(self, sections: Sequence[dict[str, NDArray[np.generic]]]) -> None:
+        """Add the loaded sections of the cycle's strokes to the last rows of these, where there are none yet."""
+        for stroke, section in zip(self.scene.program.cycle, sections, strict=True):
+            last = max((k for k, s in enumerate(self.snapshots) if s.kind == stroke.name), default=None)
+            if last is not None and not self.snapshots[last].section:
+                self.snapshots[last] = replace(self.snapshots[last], section=section)
+
+    @property
+    def sections(self) -> KeptSections:
+        """The loaded sections so far."""
+        surfaces = {contact.name: contact.surface for contact in self.scene.contacts}
+        return KeptSections(self.scene.name, [s for s in self.snapshots if s.section], surfaces)
 
     def summary(self, state: Any, status: str, message: str) -> dict[str, Any]:
         """The run in a few numbers."""
@@ -223,7 +248,7 @@ class Recorder:
             "CPU time [s]": round(self.cpu, 3),
             "peak memory [MB]": round(peak_memory(), 1),
             "units": UNITS,
-            "ngwear": __version__,
+            "ngwear": VERSION,
         }
         if scene.deactivation is not None and scene.deactivation.damage is not None:
             torn = sum(out[f"area lost by {cause} [mm^2]"] for cause in ("tearing", "coming loose"))
@@ -254,91 +279,67 @@ class Recorder:
         return found
 
 
-def _deformed_mesh(state: Any, phase: int) -> dict[str, Array]:
-    """Deformed vertices and triangles of one stroke of the cycle."""
-    from ngwear.effects.base import DISPLACEMENT
-    from ngwear.geometry.section import mesh_arrays
-
-    stage = state.stage
-    points, triangles = mesh_arrays(stage.body.mesh) if state.cells is None else stage.body.triangles()
-    u = state.phases[phase].vector[stage.problem.part(DISPLACEMENT)].reshape(2, -1)[:, : len(points)].T
-    return {"points [mm]": points + u, "triangles": triangles}
-
-
 class Folder(OutFolder):
-    """The folder of a wear run, with the checkpoint that it goes on from."""
+    """The folder of a wear run."""
 
     def __init__(self, path: Path, scene: Scene, *, resume: bool) -> None:
         self.scene_hash = fingerprint(scene)
         super().__init__(path, CHECKPOINT, resume=resume)
-
-    def load(self) -> tuple[Any, Recorder] | None:
-        """Return the state and the records of the run to go on with, or None if it has not begun."""
-        file = self.path / CHECKPOINT
-        if not file.exists():
-            return None
-        try:
-            saved = pickle.loads(file.read_bytes())
-            scene_hash, state, recorder = saved["scene"], saved["state"], saved["recorder"]
-        except Exception as error:
-            raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
-        if scene_hash != self.scene_hash:
-            raise ResultError(f"{self.path} holds a run of another scene (or of a changed one): give another folder")
-        return state, recorder
-
-    def save(self, state: Any, recorder: Recorder) -> None:
-        """Write checkpoint and series."""
-        content = pickle.dumps({"scene": self.scene_hash, "state": state, "recorder": recorder})
-        self.replace(CHECKPOINT, lambda file: file.write(content))
-        self.write_series(recorder.rows)
 
     def finish(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Write the summary, the series and the fields."""
         self.clear()
         if recorder.rows:
             self.write_series(recorder.rows)
-        self.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
-        self.replace(FIELDS, lambda file: _hdf5(file, recorder, summary))
+        self.write_json(SUMMARY, summary)
+        self.replace(FIELDS, lambda file: write(file, lambda h5: _fill(h5, recorder, summary)))
 
 
-def _hdf5(file: IO[bytes], recorder: Recorder, summary: dict[str, Any]) -> None:
+def _fill(h5: Any, recorder: Recorder, summary: dict[str, Any]) -> None:
     import h5py
 
     scene = recorder.scene
-    with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"] = __version__
-        h5.attrs["scene"] = scene.name
-        h5.attrs["units"] = json.dumps(UNITS)
-        h5.attrs["summary"] = json.dumps(summary)
-        outline = h5.create_group("outline")
-        outline["points [mm]"] = scene.part.outline.points
-        outline["edges"] = np.array(scene.part.outline.names, dtype=h5py.string_dtype())
-        outline.attrs["provenance"] = scene.part.outline.provenance
-        h5.attrs["memory"] = scene.arms is not None
-        h5.attrs["laws over distance"] = any(
-            c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
-        )
-        damage = None if scene.deactivation is None else scene.deactivation.damage
-        if damage is not None:
-            h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
-        contacts = h5.create_group("contacts")
-        for spec in scene.contacts:
-            group = contacts.create_group(spec.name)
-            rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
-            mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
-            group.attrs["edges"], group.attrs["specific wear rate [mm^2/N]"] = spec.edges, mean
-            if spec.wear_law is not None:
-                group.attrs["wear law"] = spec.wear_law.words
-        put_series(h5, recorder.rows)
-        strokes = h5.create_group("strokes")
-        for number, snapshot in enumerate(recorder.snapshots):
-            group = strokes.create_group(f"{number:05d}")
-            group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
-            group.attrs["time [s]"] = snapshot.time
-            group["outline [mm]"] = snapshot.outline
-            for contact, profile in snapshot.profiles.items():
-                for name, values in profile.items():
-                    group[f"{contact}/{name}"] = values
-            for part, content in (("mesh", snapshot.mesh), ("elements", snapshot.elements)):
-                for name, values in content.items():
-                    group[f"{part}/{name}"] = values
+    mark(h5, scene.name)
+    h5.attrs["units"] = json.dumps(UNITS)
+    h5.attrs["summary"] = json.dumps(without_subnormals(summary))
+    outline = h5.create_group("outline")
+    put(outline, "points [mm]", scene.part.outline.points)
+    outline["edges"] = np.array(scene.part.outline.names, dtype=h5py.string_dtype())
+    outline.attrs["provenance"] = scene.part.outline.provenance
+    h5.attrs["memory"] = scene.arms is not None
+    h5.attrs["laws over distance"] = any(
+        c.wear_rate.varies or (c.friction_law is not None and bool(c.friction_law.breaks)) for c in scene.contacts
+    )
+    damage = None if scene.deactivation is None else scene.deactivation.damage
+    if damage is not None:
+        h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
+    contacts = h5.create_group("contacts")
+    for number, spec in enumerate(scene.contacts):
+        group = subgroup(contacts, spec.name)
+        rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
+        mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
+        group.attrs["edges"], group.attrs[WEAR_RATE] = spec.edges, without_subnormals(mean)
+        group.attrs["surface"], group.attrs["number"] = surface_text(spec.surface), number
+        if spec.wear_law is not None:
+            group.attrs["wear law"] = spec.wear_law.words
+    put_series(h5, recorder.rows)
+    strokes = h5.create_group("strokes")
+    for number, snapshot in enumerate(recorder.snapshots):
+        _stroke(strokes.create_group(f"{number:05d}"), snapshot)
+
+
+def _stroke(group: Any, snapshot: Snapshot) -> None:
+    group.attrs["stroke"], group.attrs["kind"] = snapshot.stroke, snapshot.kind
+    group.attrs["time [s]"] = snapshot.time
+    put(group, "outline [mm]", snapshot.outline)
+    for name, profile in snapshot.profiles.items():
+        _put_all(subgroup(group, name), CONTACT, profile)
+    for name, content in (("section", snapshot.section), ("elements", snapshot.elements)):
+        if content:
+            _put_all(subgroup(group, name), PART, content, compressed=name == "section")
+
+
+def _put_all(group: Any, kind: str, content: Mapping[str, NDArray[Any]], *, compressed: bool = False) -> None:
+    group.attrs["holds"] = kind
+    for name, values in content.items():
+        put(group, name, values, compressed=compressed)

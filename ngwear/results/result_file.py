@@ -6,30 +6,36 @@ import json
 import math
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
-from ngwear.files.result_folder import FIELDS, get_series
+from ngwear.files.hdf5 import get_series, name_of, require_layout
+from ngwear.files.result_folder import FIELDS
+from ngwear.results.surface_text import surfaces_of
+from ngwear.surfaces import RigidSurface
 
 Array = NDArray[np.float64]
+WEAR_RATE = "specific wear rate [mm^2 per N]"  # attribute of a contact
+CONTACT, PART = "contact", "part"  # what a group of a stroke holds: a contact, or the mesh or the elements
 
 
 @dataclass(frozen=True)
 class Snapshot:
     """Outline and contact profiles at one solved stroke, as a run keeps them and as read from ``result.h5``.
 
-    ``time`` [s] is infinite where a stroke has no speed; ``mesh`` is empty but at the first stroke, ``elements`` but at
-    the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
+    ``time`` [s] is infinite where a stroke has no speed; ``section`` (see ``ngwear.results.section``) and ``elements``
+    are empty but at the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
     """
 
     stroke: float
     kind: str
     outline: Array
     profiles: dict[str, dict[str, Array]]
-    mesh: dict[str, Array] = field(default_factory=dict)
-    elements: dict[str, Array] = field(default_factory=dict)
+    section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
+    elements: dict[str, NDArray[Any]] = field(default_factory=dict)
     time: float = math.inf
 
 
@@ -45,8 +51,7 @@ class ResultFile:
     edges : tuple of str, length n
         Name of each of its segments.
     wear_rates : dict
-        Specific wear rate k of each contact that wears, its mean over the run [mm²/N]; empty in files of before it was
-        kept.
+        Specific wear rate k of each contact that wears, its mean over the run [mm²/N].
     worn_edges : tuple of str
     remembers : bool
         Whether the rubber has memory.
@@ -59,6 +64,8 @@ class ResultFile:
     series : dict of array
         Columns as in ``series.csv``; row i belongs to snapshot i.
     snapshots : list of Snapshot
+    surfaces : dict of str to RigidSurface
+        The rigid surface of each contact in its final place, of those that a file can say.
     """
 
     scene: str
@@ -72,6 +79,7 @@ class ResultFile:
     errors: dict[str, float]
     series: dict[str, Array]
     snapshots: list[Snapshot]
+    surfaces: dict[str, RigidSurface] = field(default_factory=dict)
 
     @property
     def kinds(self) -> list[str]:
@@ -90,7 +98,7 @@ def read_result(folder: Path | str) -> ResultFile:
     Raises
     ------
     ResultError
-        If the file is missing or damaged.
+        If the file is missing, damaged, or of another layout.
     """
     import h5py
 
@@ -99,27 +107,13 @@ def read_result(folder: Path | str) -> ResultFile:
         raise ResultError(f"{file} does not exist: give the folder of a run that has ended (see ngwear run --out)")
     try:
         with h5py.File(file, "r") as h5:
-            snapshots = []
-            for group in h5["strokes"].values():
-                parts = {k: {n: d[()] for n, d in g.items()} for k, g in group.items() if isinstance(g, h5py.Group)}
-                snapshots.append(
-                    Snapshot(
-                        group.attrs["stroke"].item(),
-                        str(group.attrs["kind"]),
-                        group["outline [mm]"][()],
-                        {k: v for k, v in parts.items() if k not in ("mesh", "elements")},
-                        parts.get("mesh", {}),
-                        parts.get("elements", {}),
-                        float(group.attrs.get("time [s]", math.inf)),
-                    )
-                )
-            rate = "specific wear rate [mm^2/N]"
-            worn = {name: group.attrs for name, group in h5.get("contacts", {}).items() if group.attrs[rate] > 0}
+            require_layout(h5, file)
+            worn = {name_of(g): g.attrs for g in h5["contacts"].values() if g.attrs[WEAR_RATE] > 0}
             return ResultFile(
                 scene=str(h5.attrs["scene"]),
                 outline=h5["outline/points [mm]"][()],
                 edges=tuple(h5["outline/edges"].asstr()[()]),
-                wear_rates={name: float(attributes[rate]) for name, attributes in worn.items()},
+                wear_rates={name: float(attributes[WEAR_RATE]) for name, attributes in worn.items()},
                 worn_edges=tuple(
                     dict.fromkeys(str(edge) for attributes in worn.values() for edge in attributes["edges"])
                 ),
@@ -132,7 +126,26 @@ def read_result(folder: Path | str) -> ResultFile:
                 ),
                 errors=json.loads(h5.attrs.get("summary", "{}")).get("error estimates", {}),
                 series=get_series(h5),
-                snapshots=snapshots,
+                snapshots=[_snapshot(group) for group in h5["strokes"].values()],
+                surfaces=surfaces_of(h5),
             )
     except (OSError, KeyError, ValueError, AttributeError, TypeError, RuntimeError) as error:
         raise ResultError(f"{file} cannot be read as a result of ngwear: {error}") from error
+
+
+def _snapshot(group: Any) -> Snapshot:
+    """One stroke of the file."""
+    found: dict[str, dict[str, dict[str, NDArray[Any]]]] = {CONTACT: {}, PART: {}}
+    for item in group.values():
+        if "holds" in item.attrs:
+            content = {name_of(values): values[()] for values in item.values()}
+            found[item.attrs["holds"]][name_of(item)] = content
+    return Snapshot(
+        stroke=group.attrs["stroke"].item(),
+        kind=str(group.attrs["kind"]),
+        outline=group["outline [mm]"][()],
+        profiles=found[CONTACT],
+        section=found[PART].get("section", {}),
+        elements=found[PART].get("elements", {}),
+        time=float(group.attrs.get("time [s]", math.inf)),
+    )

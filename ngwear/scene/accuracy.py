@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ngwear.errors import check_fields, require
+from ngwear.errors import SceneError, check_fields, require
 
 ORDERS = (1, 2, 3)  # of the displacement
 PATCH, COARSE, MOUNTING = 0.01, 0.2, 0.03  # mm, where neither lengths nor elements across are given
@@ -19,6 +19,26 @@ TOLERANCES = ("stress_error", "wear_error", "longest_jump", "depth_error")
 LEAST_ACROSS, MOST_ACROSS = 0.5, 200.0
 LEAST_ERROR = 1e-3  # what two meshes differ by where nodes happen to fall, measured on the shipped scenes
 PRESETS = {"draft": 6.0, "engineering": 12.0, "reference": 24.0}  # elements across
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lengths:
+    """What a mesh is made by: element edges [mm] and their growth [-], each as of ``Accuracy``."""
+
+    patch: float
+    coarse: float
+    mounting: float
+    grading: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Tolerances:
+    """What a run on one mesh after the other may err by [-], each as of ``Accuracy``."""
+
+    stress_error: float
+    wear_error: float
+    longest_jump: float
+    depth_error: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,8 +85,10 @@ class Accuracy:
         that are not given go along: the stresses' with the square of the element edge, the depth's, the wear's, up to
         0.05, and the longest jump with the edge.
     error : float or None
-        Relative error of the greatest depth that the run shall state of itself [-]; it chooses all else
+        Relative error of the greatest depth that the run shall state [-]; the run chooses all else
         (``ngwear.error_estimates.run_to_error``).
+    peak_error : float or None
+        Relative error of the peak pressure that it shall state as well [-]; with ``error`` only.
     """
 
     patch: float | None = None
@@ -82,6 +104,7 @@ class Accuracy:
     parts: int = 1
     across: float | None = None
     error: float | None = None
+    peak_error: float | None = None
 
     @classmethod
     def preset(cls, name: str) -> Accuracy:
@@ -118,9 +141,53 @@ class Accuracy:
         grading = other.grading if self.grading in (None, _usual_grading(self.across)) else self.grading
         return replace(other, grading=grading, order=self.order, folding_error=self.folding_error, parts=self.parts)
 
-    def with_across(self, across: float, **tolerances: float) -> Accuracy:
+    def with_across(
+        self,
+        across: float,
+        *,
+        stress_error: float | None = None,
+        wear_error: float | None = None,
+        longest_jump: float | None = None,
+        depth_error: float | None = None,
+    ) -> Accuracy:
         """So many elements across instead, with these tolerances; the grading goes along as in ``given``."""
-        return self.given(Accuracy(across=across, **tolerances))
+        return self.given(
+            Accuracy(
+                across=across,
+                stress_error=stress_error,
+                wear_error=wear_error,
+                longest_jump=longest_jump,
+                depth_error=depth_error,
+            )
+        )
+
+    @property
+    def lengths(self) -> Lengths:
+        """Lengths and grading.
+
+        Raises
+        ------
+        SceneError
+            If a run is yet to choose them: by ``across``, or to meet an ``error``.
+        """
+        patch, coarse, mounting, grading = self.patch, self.coarse, self.mounting, self.grading
+        if patch is None or coarse is None or mounting is None or grading is None:
+            raise SceneError("accuracy.patch", patch, "is chosen while the scene runs, by accuracy.across or .error")
+        return Lengths(patch=patch, coarse=coarse, mounting=mounting, grading=grading)
+
+    @property
+    def tolerances(self) -> Tolerances:
+        """The tolerances.
+
+        Raises
+        ------
+        SceneError
+            If runs are yet to choose them, to meet an ``error``.
+        """
+        stress, wear, jump, depth = self.stress_error, self.wear_error, self.longest_jump, self.depth_error
+        if stress is None or wear is None or jump is None or depth is None:
+            raise SceneError("accuracy.wear_error", wear, "is chosen while the scene runs, to meet accuracy.error")
+        return Tolerances(stress_error=stress, wear_error=wear, longest_jump=jump, depth_error=depth)
 
     def __post_init__(self) -> None:
         check_fields(self, "accuracy")
@@ -137,25 +204,30 @@ class Accuracy:
         if self.error is not None:
             return
         finer = 1.0 if self.across is None else ALIKE / self.across
-        self._default("stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2))
-        self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer))
-        self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
-        self._default("longest_jump", min(1.0, LONGEST_JUMP * self.wear_error))
-        require(0 < self.stress_error <= 1, "accuracy.stress_error", self.stress_error, "must lie between 0 and 1")
-        require(0 < self.wear_error < 1, "accuracy.wear_error", self.wear_error, "must lie between 0 and 1")
-        require(0 < self.longest_jump <= 1, "accuracy.longest_jump", self.longest_jump, "must lie between 0 and 1")
-        require(0 < self.depth_error <= 1, "accuracy.depth_error", self.depth_error, "must lie between 0 and 1")
+        stress = self._default(
+            "stress_error", STRESS_ERROR if self.across is None else min(1.0, STRESS_ACROSS * finer**2)
+        )
+        depth = self._default("depth_error", 1.0 if self.across is None else min(1.0, DEPTH_ACROSS * finer))
+        wear = self._default("wear_error", min(LOOSEST, WEAR_ERROR * finer))
+        jump = self._default("longest_jump", min(1.0, LONGEST_JUMP * wear))
+        require(0 < stress <= 1, "accuracy.stress_error", stress, "must lie between 0 and 1")
+        require(0 < wear < 1, "accuracy.wear_error", wear, "must lie between 0 and 1")
+        require(0 < jump <= 1, "accuracy.longest_jump", jump, "must lie between 0 and 1")
+        require(0 < depth <= 1, "accuracy.depth_error", depth, "must lie between 0 and 1")
         if self.across is not None:
             return
-        for name, value in (("patch", PATCH), ("coarse", COARSE), ("mounting", MOUNTING)):
-            self._default(name, value)
-        require(self.patch > 0, "accuracy.patch", self.patch, "must be greater than 0 mm")
-        require(self.coarse >= self.patch, "accuracy.coarse", self.coarse, "must be at least the patch size")
-        require(self.mounting >= self.patch, "accuracy.mounting", self.mounting, "must be at least the patch size")
+        patch = self._default("patch", PATCH)
+        coarse, mounting = self._default("coarse", COARSE), self._default("mounting", MOUNTING)
+        require(patch > 0, "accuracy.patch", patch, "must be greater than 0 mm")
+        require(coarse >= patch, "accuracy.coarse", coarse, "must be at least the patch size")
+        require(mounting >= patch, "accuracy.mounting", mounting, "must be at least the patch size")
 
-    def _default(self, name: str, value: float) -> None:
+    def _default(self, name: str, value: float) -> float:
+        """Set what is not given; return what holds."""
         if getattr(self, name) is None:
             object.__setattr__(self, name, value)
+        holds: float = getattr(self, name)
+        return holds
 
     def _refuse_two_ways(self) -> None:
         """SceneError for an accuracy that is said twice, or that no run can show."""
@@ -175,6 +247,12 @@ class Accuracy:
                 "accuracy.across and judge by runs of your own"
             )
             require(self.error >= LEAST_ERROR, "accuracy.error", self.error, says)
+        peak = self.peak_error
+        if peak is not None:
+            says = "goes with accuracy.error, that of the depth: give it, too"
+            require(self.error is not None, "accuracy.peak_error", peak, says)
+            says = f"must lie between {LEAST_ERROR:g} and 1; 0.1 is ten per cent"
+            require(LEAST_ERROR <= peak < 1, "accuracy.peak_error", peak, says)
 
 
 def _usual_grading(across: float | None) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.errors import require
+from ngwear.errors import check_fields, require
 from ngwear.geometry.cells import Cells
 from ngwear.laws.damage import Criterion
 
@@ -28,6 +28,7 @@ class DistortionFilter:
     corner_cosine: float = 0.99
 
     def __post_init__(self) -> None:
+        check_fields(self, "deactivation.distortion")
         place = "deactivation.distortion"
         require(0 < self.corner_cosine < 1, f"{place}.corner_cosine", self.corner_cosine, "must lie between 0 and 1")
 
@@ -61,6 +62,7 @@ class Deactivation:
     reach: float | None = None
 
     def __post_init__(self) -> None:
+        check_fields(self, "deactivation")
         require(self.depth > 0, "deactivation.depth", self.depth, "must be greater than 0 mm")
         positive = self.reach is None or self.reach > 0
         require(positive, "deactivation.reach", self.reach, "must be greater than 0 mm, or left out")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from pathlib import Path
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.laws import FrictionLaw, law_of
 from ngwear.materials import Folding, Hyperelastic, PronySeries
 
@@ -73,6 +74,13 @@ class Pin:
         return law_of(self.friction)
 
     @property
+    def arms(self) -> PronySeries:
+        """The series; SceneError for elastic rubber."""
+        if self.series is None:
+            raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
+        return self.series
+
+    @property
     def contact_radius(self) -> float:
         """A guess between Hertz's contact on a half-space and that on a thin bonded layer [mm]."""
         modulus = 4 * self.material.shear_modulus
@@ -101,6 +109,7 @@ class PinMesh:
     folding_error: float = 1e-3
 
     def __post_init__(self) -> None:
+        check_fields(self, "accuracy")
         for name in ("patch", "coarse", "column", "reach", "beside"):
             if not 0 < getattr(self, name) < math.inf:
                 raise SceneError(f"accuracy.{name}", getattr(self, name), "must be finite and greater than 0")
@@ -153,3 +162,15 @@ class PinScene:
                 raise SceneError(f"program.speeds[{i}]", speed, "is given twice")
         if self.pin.series is None:
             raise SceneError("material.prony", None, "is missing: without memory friction does not depend on speed")
+
+    def write(self, path: Path | str) -> None:
+        """Write the scene to a ``.toml`` file.
+
+        Raises
+        ------
+        SceneError
+            For what a scene file cannot say, such as a law or material of one's own.
+        """
+        from ngwear.scene.write_scene import write_pin_scene
+
+        write_pin_scene(self, Path(path))

@@ -22,8 +22,8 @@ from ngwear.laws import (
 )
 from ngwear.scene.toml_values import get, known, record
 
-_LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
-_WEAR_LAWS = {
+FRICTION_LAWS = {"lubrication": Lubrication, "pressure": ByPressure, "stribeck": Stribeck, "product": Product}
+WEAR_LAWS = {
     "power": PowerWear,
     "threshold": ThresholdWear,
     "saturating": SaturatingWear,
@@ -42,16 +42,18 @@ def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
     SceneError
         For an unknown law or key, or a value out of range.
     """
-    if not isinstance(value, dict):
-        return typed(place, value, "float")
-    kind, values = _chosen(place, value, _LAWS)
+    return _friction_law(place, value, folder) if isinstance(value, dict) else typed(place, value, "float")
+
+
+def _friction_law(place: str, table: dict[str, Any], folder: Path) -> FrictionLaw:
+    kind, values = _chosen(place, table, FRICTION_LAWS)
     if kind == "product":
         return _product(place, values, folder)
     if kind == "lubrication" and "fitted" in values:
         from ngwear.laws.fit import fit_lubrication  # SciPy's optimizers are slow to load
 
         return _of_file(place, values, "fitted", folder, lambda path: fit_lubrication(path).law)
-    return _table(place, values, folder, _LAWS[kind])
+    return _table(place, values, folder, FRICTION_LAWS[kind])
 
 
 def read_wear_rate(place: str, value: Any, folder: Path) -> WearRate | float:
@@ -77,8 +79,8 @@ def read_wear_law(place: str, value: Any, folder: Path) -> WearLaw:
     """
     if not isinstance(value, dict):
         raise SceneError(place, value, 'must be a table, such as { law = "power", exponent = 2.0 }')
-    kind, values = _chosen(place, value, _WEAR_LAWS)
-    return _table(place, values, folder, _WEAR_LAWS[kind])
+    kind, values = _chosen(place, value, WEAR_LAWS)
+    return _table(place, values, folder, WEAR_LAWS[kind])
 
 
 def _chosen(place: str, table: dict[str, Any], laws: dict[str, Any]) -> tuple[str, dict[str, Any]]:
@@ -94,7 +96,7 @@ def _product(place: str, values: dict[str, Any], folder: Path) -> Product:
     factors = get(values, place, "factors")
     if not isinstance(factors, list) or not all(isinstance(factor, dict) for factor in factors):
         raise SceneError(f"{place}.factors", factors, "must be a list of laws, each a table with its law")
-    laws = tuple(read_friction(f"{place}.factors[{i}]", factor, folder) for i, factor in enumerate(factors))
+    laws = tuple(_friction_law(f"{place}.factors[{i}]", factor, folder) for i, factor in enumerate(factors))
     return _placed(f"{place}.", lambda: Product(factors=laws))
 
 

@@ -10,7 +10,7 @@ from ngwear.materials import WLF, Arrhenius, Hyperelastic, MooneyRivlin, NeoHook
 from ngwear.materials.library import relaxation_of
 from ngwear.scene.toml_values import get, known, record
 
-_MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
+MATERIALS: dict[str, Callable[..., Hyperelastic]] = {
     "neo-hooke": NeoHooke,
     "mooney-rivlin": MooneyRivlin,
 }
@@ -21,10 +21,10 @@ _REFERENCES = ("long-term", "instantaneous", "absolute")
 def read_material(table: dict[str, Any]) -> Hyperelastic:
     """Long-term behaviour, of a table [material]."""
     model = get(table, "material", "model")
-    if not isinstance(model, str) or model not in _MATERIALS:
-        raise SceneError("material.model", model, f"must be one of {list(_MATERIALS)}")
+    if not isinstance(model, str) or model not in MATERIALS:
+        raise SceneError("material.model", model, f"must be one of {list(MATERIALS)}")
     values = {key: value for key, value in table.items() if key not in ("model", "source", "prony")}
-    return record(_MATERIALS[model], "material", values)
+    return record(MATERIALS[model], "material", values)
 
 
 def read_arms(table: dict[str, Any]) -> PronySeries:
@@ -33,7 +33,7 @@ def read_arms(table: dict[str, Any]) -> PronySeries:
     if not isinstance(table, dict):
         raise SceneError(place, table, "must be a table [material.prony]")
     table = {key: value for key, value in table.items() if key != "source"}
-    shift = None
+    shift: WLF | Arrhenius | None = None
     common = {"temperature", "shift", "smoothing"}
     if "compound" in table:
         known(f"{place}.", table, {"compound", *common})

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ngwear.errors import SceneError, typed
-from ngwear.geometry.outline_files import read_outline
+from ngwear.geometry.outline import Outline
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.boundary import Fluid, Support
 from ngwear.scene.contact import Contact
@@ -23,7 +23,7 @@ from ngwear.scene.read_material import read_arms, read_material
 from ngwear.scene.read_pin import pin_scene
 from ngwear.scene.scene import Scene
 from ngwear.scene.toml_values import coordinate, get, known, record, subtable, tables
-from ngwear.surfaces import Cylinder, Plane, RigidSurface
+from ngwear.surfaces import Cylinder, Plane, RigidSurface, bore, rod
 
 TABLES = {
     *("scene", "contour", "material", "contact", "fluid", "support"),
@@ -40,8 +40,8 @@ def _rename(function: Callable[..., Any], **names: str) -> Callable[..., Any]:
 
 
 _SURFACES: dict[str, tuple[Callable[..., RigidSurface], set[str]]] = {
-    "rod": (Plane.rod, {"diameter"}),
-    "bore": (Plane.bore, {"diameter"}),
+    "rod": (rod, {"diameter"}),
+    "bore": (bore, {"diameter"}),
     "plane": (_rename(Plane, normal="normal_vector"), {"point", "normal"}),
     "cylinder": (Cylinder, {"centre", "radius", "push"}),
 }
@@ -95,7 +95,7 @@ def _part(data: dict[str, Any], folder: Path) -> Part:
     outline, material = subtable(data, "contour"), subtable(data, "material")
     known("contour.", outline, {"file"})
     return Part(
-        read_outline(folder / typed("contour.file", get(outline, "contour", "file"), "str")),
+        Outline.read(folder / typed("contour.file", get(outline, "contour", "file"), "str")),
         material=read_material(material),
         prony=read_arms(material["prony"]) if "prony" in material else None,
     )

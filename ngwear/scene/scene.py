@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass, field
+from pathlib import Path
 from typing import Any
 
 from ngwear.errors import check_fields, require
@@ -88,6 +89,18 @@ class Scene:
         refuse_in_scene(self)
         for contact in self.contacts:
             self._check_side(contact)
+
+    def write(self, path: Path | str) -> None:
+        """Write the scene to a ``.toml`` file and its outline beside it (``ngwear.scene.write_scene``).
+
+        Raises
+        ------
+        SceneError
+            For what a scene file cannot say, such as a law or material of one's own.
+        """
+        from ngwear.scene.write_scene import write_wear_scene
+
+        write_wear_scene(self, Path(path))
 
     def _check_kinds(self) -> None:
         """Refuse what is no part, no contact ...; lists become tuples."""
@@ -183,6 +196,11 @@ class Scene:
     def marks(self) -> tuple[int, ...]:
         """Strokes as they are solved that a jump must not pass over."""
         return tuple(self.program.parts * strokes for strokes in self.save.strokes)
+
+    @property
+    def kept(self) -> tuple[int, ...]:
+        """Strokes as they are solved whose sections are kept, new and at the end among them."""
+        return (0, *self.marks, self.program.strokes)
 
     @property
     def worn_edges(self) -> tuple[str, ...]:

@@ -30,8 +30,10 @@ def coordinate(place: str, value: Any, *, pair: bool) -> Any:
     return typed(place, value, "float")
 
 
-def known(prefix: str, table: dict[str, Any], allowed: set[str]) -> None:
-    """Refuse keys that are not allowed."""
+def known(prefix: str, table: Any, allowed: set[str]) -> None:
+    """Refuse what is no table, and keys that are not allowed."""
+    if not isinstance(table, dict):
+        raise SceneError(prefix.removesuffix("."), table, "must be a table")
     for key, value in table.items():
         if key not in allowed:
             raise SceneError(f"{prefix}{key}", value, f"unknown key; known here: {sorted(allowed)}")

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from ngwear.effects.contact_patch import Faces, PatchContact
+from ngwear.errors import SceneError
+from ngwear.surfaces import Sphere
 
 Array = NDArray[np.float64]
 RAYS = 72
@@ -45,13 +47,16 @@ def contact_patch(contact: PatchContact) -> Patch:
     square. An area counted by elements is quantised, and one extrapolated from the gaps outside scatters with how the
     mesh lies where elements are few.
     """
+    ball = contact.surface
+    if not isinstance(ball, Sphere):
+        raise SceneError("surface", ball, "must be a ball")
     faces = contact.faces()
     edge = _edge(faces)
     height = faces.reference[0, 2]
     moved = contact.deformed(np.column_stack([edge, np.full(RAYS, height)]))
-    from_axis = moved[:, :2] - np.array(contact.surface.centre[:2])
+    from_axis = moved[:, :2] - np.array(ball.centre[:2])
     turn = np.unwrap(np.arctan2(*from_axis.T[::-1]))
-    radius = contact.surface.radius
+    radius = ball.radius
     cap = radius**2 * (1 - np.sqrt(1 - (from_axis**2).sum(axis=1) / radius**2))
     step = np.diff(np.append(turn, turn[0] + 2 * np.pi))
     (x, y), (x1, y1) = edge.T, np.roll(edge, -1, axis=0).T
@@ -96,7 +101,7 @@ def _touching(corners: Array, chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Faces that have a corner in common with a chosen one."""
     _, number = np.unique(np.round(corners.reshape(-1, 2), 9), axis=0, return_inverse=True)
     number = number.reshape(-1, 3)
-    return np.isin(number, number[chosen]).any(axis=1)
+    return np.any(np.isin(number, number[chosen]), axis=1)
 
 
 def _inside(split: int) -> Array:

@@ -108,7 +108,7 @@ class PinStage:
         self.friction = FullSliding(self.contact, law, speed=speed) if law is not None else None
         if self.friction is not None:
             terms.append(self.friction)
-        self.memory = None
+        self.memory: SteadyMemory | None = None
         if pin.series is not None:
             self.memory = SteadyMemory(pin.material, pin.series, self._grid(disc))
             terms.append(self.memory)
@@ -139,6 +139,8 @@ class PinStage:
 
     def slide(self, speed: float, options: SteadyOptions) -> Work:
         """Find the steady state at a speed from the present one."""
+        if self.memory is None:
+            raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
         self.problem.set_loads({"pin force [N]": self.pin.load})
         wavelength = self.pin.contact_radius  # a quarter of the pressure's own
         self.memory.set_speed(speed, wavelength)
@@ -214,10 +216,8 @@ def slide_pin(
     """
     if not 0 < speed < math.inf:
         raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest press the pin on")
-    if pin.series is None:
-        raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
     mesh, options = mesh or PinMesh(), options or SteadyOptions(tolerance=ROUGH)
-    pin = replace(pin, series=mesh.folding(pin.series, speed).kept)
+    pin = replace(pin, series=mesh.folding(pin.arms, speed).kept)
     clock = time.process_time()
     coarse = PinStage(pin, coarsened(mesh), (0.0, 0.0, pin.contact_radius), speed=speed)
     work = coarse.press()

@@ -2,18 +2,29 @@
 
 from __future__ import annotations
 
+import csv
 import functools
 import json
 import time
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
-from ngwear import __version__
-from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SUMMARY, OutFolder, put_series
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.effects.contact_patch import Faces
+from ngwear.equilibrium.stepping import Work
+from ngwear.errors import ConvergenceError, ResultError
+from ngwear.files.hdf5 import mark, put, put_series, stored_name, write
+from ngwear.files.result_folder import COMPLETED, FIELDS, GAVE_UP, SERIES, SUMMARY, OutFolder
+from ngwear.files.subnormal import without_subnormals
 from ngwear.parallel.sweep import Outcome, sweep
+from ngwear.results.closing_table import closing_table
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.pin_scene import KIND, PinScene
+from ngwear.sliding.patch import Patch
 from ngwear.sliding.pin import COARSER, PinSlide, slide_pin
 from ngwear.units import UNITS
 
@@ -28,6 +39,67 @@ READINGS: dict[str, Callable[[PinSlide], float]] = {
 ORDERS = dict.fromkeys(READINGS, 2.0)  # of convergence
 
 
+@dataclass(frozen=True)
+class PinResult:
+    """How a run of a pin ended, and what it found; printed, a table with the stated errors.
+
+    Attributes
+    ----------
+    status : str
+        ``"completed"`` or ``"gave up"``.
+    message : str
+        Why it stopped.
+    summary : dict
+        As in ``summary.json``.
+    series : dict of array
+        Columns as in ``series.csv``, one value a speed; ``pandas.DataFrame`` takes them.
+    folder : Path or None
+        Where its files are.
+    """
+
+    status: str
+    message: str
+    summary: dict[str, Any]
+    series: dict[str, NDArray[Any]]
+    folder: Path | None = None
+
+    @classmethod
+    def read(cls, folder: Path | str) -> PinResult:
+        """Read what a run has left in its folder.
+
+        Raises
+        ------
+        ResultError
+            If it is missing or damaged.
+        """
+        path = Path(folder)
+        try:
+            summary = json.loads((path / SUMMARY).read_text(encoding="utf-8"))
+            with (path / SERIES).open(newline="", encoding="utf-8") as file:
+                rows = list(csv.DictReader(file))
+            series = {name: np.array([float(row[name]) for row in rows]) for name in (rows[0] if rows else ())}
+            return cls(summary["status"], summary["message"], summary, series, path)
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise ResultError(f"{path} cannot be read as a run of a pin: {error}") from error
+
+    def __str__(self) -> str:
+        return closing_table(self.summary)
+
+    def plot(self) -> list[Path]:
+        """Draw the figures into the folder; return their files.
+
+        Raises
+        ------
+        ResultError
+            If the run kept nothing, or its file is damaged.
+        """
+        if self.folder is None:
+            raise ResultError("the run kept nothing: give it a folder by out=...")
+        from ngwear.plots.pin import plot_pin
+
+        return list(plot_pin(self.folder))
+
+
 def run_pin(
     scene: PinScene,
     *,
@@ -36,7 +108,8 @@ def run_pin(
     progress: bool = False,
     workers: int | None = None,
     figures: bool = True,
-) -> dict[str, Any]:
+    throw: bool = False,
+) -> PinResult:
     """Slide at every speed of the scene, two at a time, and write series, fields, summary and figures.
 
     A speed that fails does not lose the others: the summary's status is then ``"gave up"`` and its message names it.
@@ -54,33 +127,43 @@ def run_pin(
         Processes; by default as many as cores.
     figures : bool
         Draw the figures.
-
-    Returns
-    -------
-    dict
-        As in ``summary.json``.
+    throw : bool
+        Raise if a speed failed, once the others are saved.
 
     Raises
     ------
     ResultError
         If the folder cannot be used.
+    ConvergenceError
+        If a speed failed and ``throw`` is True.
     """
     wall = time.perf_counter()
     folder = OutFolder(Path(out), POINTS, resume=resume)
     slide = functools.partial(slide_pin, scene.pin, mesh=scene.mesh, vtk=folder.path if scene.vtk else None)
-    points = {"folder": folder.path / POINTS, "resume": resume, "workers": workers, "progress": progress}
-    outcomes = sweep(slide, scene.speeds, **points)
+    outcomes = sweep(
+        slide,
+        scene.speeds,
+        folder=folder.path / POINTS,
+        resume=resume,
+        workers=workers,
+        progress=progress,
+        classes=(PinSlide, Patch, Faces, Work),
+    )
     pairs = [o.result for o in outcomes if o.ok]
     summary = _summary(scene, outcomes, pairs, time.perf_counter() - wall)
     folder.clear()
-    folder.write_series([row(*pair) for pair in pairs])
-    folder.replace(FIELDS, lambda file: _hdf5(file, scene, pairs, summary))
-    folder.replace(SUMMARY, lambda file: file.write((json.dumps(summary, indent=2) + "\n").encode()))
+    rows = [row(*pair) for pair in pairs]
+    folder.write_series(rows)
+    folder.replace(FIELDS, lambda file: write(file, lambda h5: _fill(h5, scene, pairs, summary)))
+    folder.write_json(SUMMARY, summary)
     if figures and pairs:
         from ngwear.plots.pin import plot_pin
 
         plot_pin(folder.path)
-    return summary
+    if throw and summary["status"] == GAVE_UP:
+        raise ConvergenceError(summary["message"])
+    series = {name: np.array([row[name] for row in rows]) for name in (rows[0] if rows else ())}
+    return PinResult(summary["status"], summary["message"], summary, series, folder.path)
 
 
 def row(coarse: PinSlide, fine: PinSlide) -> dict[str, float]:
@@ -116,7 +199,7 @@ def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
     bound, at the worst speed. What is integrated over the contact, or fitted to many of its faces, errs by the square
     of what the strains do, and time steps are of second order.
     """
-    folded = max(scene.mesh.folding(scene.pin.series, fine.speed).bound for _, fine in pairs)
+    folded = max(scene.mesh.folding(scene.pin.arms, fine.speed).bound for _, fine in pairs)
     coarse, fine = (readings([pair[k] for pair in pairs]) for k in (0, 1))
     levels = relative_errors(fine, coarse, ratio=COARSER, orders=ORDERS)
     return (
@@ -127,7 +210,7 @@ def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
 
 
 def _summary(scene: PinScene, outcomes: list[Outcome], pairs: list[Pair], wall: float) -> dict[str, Any]:
-    failed = [f"{o.point:g} mm/s: {o.failure.message}" for o in outcomes if not o.ok]
+    failed = [f"{o.point:g} mm/s: {o.failure.message}" for o in outcomes if o.failure is not None]
     summary: dict[str, Any] = {
         "status": GAVE_UP if failed else COMPLETED,
         "message": "; ".join(failed) or "all speeds done",
@@ -158,18 +241,17 @@ def _summary(scene: PinScene, outcomes: list[Outcome], pairs: list[Pair], wall: 
     return summary | {"wall time [s]": round(wall, 3), "CPU time [s]": round(cpu, 3)}
 
 
-def _hdf5(file: IO[bytes], scene: PinScene, pairs: list[Pair], summary: dict[str, Any]) -> None:
-    import h5py
-
-    with h5py.File(file, "w") as h5:
-        h5.attrs["ngwear"], h5.attrs["scene"], h5.attrs["kind"] = __version__, scene.name, KIND
-        h5.attrs["thickness [mm]"] = scene.pin.thickness
-        h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(summary)
-        put_series(h5, [row(*pair) for pair in pairs])
-        for number, (_, slide) in enumerate(pairs):
-            group = h5.create_group(f"speeds/{number:03d}")
-            group.attrs["speed [mm/s]"] = slide.speed
-            group["edge of the contact [mm]"] = slide.patch.edge
-            group["faces/corners, deformed [mm]"] = slide.faces.corners
-            group["faces/centres, undeformed [mm]"] = slide.faces.reference
-            group["faces/pressure [MPa]"] = slide.faces.pressure
+def _fill(h5: Any, scene: PinScene, pairs: list[Pair], summary: dict[str, Any]) -> None:
+    mark(h5, scene.name)
+    h5.attrs["kind"] = KIND
+    h5.attrs["thickness [mm]"] = scene.pin.thickness
+    h5.attrs["units"], h5.attrs["summary"] = json.dumps(UNITS), json.dumps(without_subnormals(summary))
+    put_series(h5, [row(*pair) for pair in pairs])
+    for number, (_, slide) in enumerate(pairs):
+        group = h5.create_group(f"speeds/{number:03d}")
+        group.attrs[stored_name("speed [mm/s]")] = slide.speed
+        put(group, "edge of the contact [mm]", slide.patch.edge)
+        faces = group.create_group("faces")
+        put(faces, "corners, deformed [mm]", slide.faces.corners)
+        put(faces, "centres, undeformed [mm]", slide.faces.reference)
+        put(faces, "pressure [MPa]", slide.faces.pressure)

@@ -2,8 +2,8 @@
 
 from ngwear.surfaces.base import RigidSurface
 from ngwear.surfaces.cylinder import Cylinder
-from ngwear.surfaces.plane import Plane
+from ngwear.surfaces.plane import Plane, bore, rod
 from ngwear.surfaces.sphere import Sphere
 from ngwear.surfaces.worn import WornProfile
 
-__all__ = ["Cylinder", "Plane", "RigidSurface", "Sphere", "WornProfile"]
+__all__ = ["Cylinder", "Plane", "RigidSurface", "Sphere", "WornProfile", "bore", "rod"]

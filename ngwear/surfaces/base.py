@@ -46,6 +46,16 @@ class RigidSurface(abc.ABC):
         """
         raise SceneError("surface", type(self).__name__, "has no coordinate along it, and so no worn profile")
 
+    def motion(self, *place: Any) -> tuple[Any, ...]:
+        """Velocity of the body that carries the surface, over its own speed along a track [-].
+
+        Raises
+        ------
+        SceneError
+            For a surface that runs along no track.
+        """
+        raise SceneError("surface", type(self).__name__, "runs along no track")
+
     @property
     def length(self) -> float:
         """Once around a closed curve [mm]; infinite for an open one."""

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.surfaces.base import RigidSurface
 
 
@@ -29,6 +29,7 @@ class Cylinder(RigidSurface):
     push: tuple[float, float] = (0.0, -1.0)
 
     def __post_init__(self) -> None:
+        check_fields(self, "surface")
         if not self.radius > 0:
             raise SceneError("surface.radius", self.radius, "must be greater than 0 mm")
         length = math.hypot(*self.push)

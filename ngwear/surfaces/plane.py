@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from numbers import Real
 from typing import Any
 
-from ngwear.errors import SceneError
+from ngwear.errors import SceneError, check_fields
 from ngwear.surfaces.base import RigidSurface
 
 
@@ -27,25 +28,12 @@ class Plane(RigidSurface):
     normal_vector: tuple[float, float]
 
     def __post_init__(self) -> None:
+        check_fields(self, "surface")
         length = math.hypot(*self.normal_vector)
         if not length > 0:
             raise SceneError("surface.normal", self.normal_vector, "must be a vector longer than 0")
         nx, ny = self.normal_vector
         object.__setattr__(self, "normal_vector", (nx / length, ny / length))
-
-    @classmethod
-    def rod(cls, diameter: float) -> Plane:
-        """Shaft of the given diameter [mm] on the axis of an axisymmetric scene."""
-        if not diameter > 0:
-            raise SceneError("surface.diameter", diameter, "must be greater than 0 mm")
-        return cls(point=(0.0, diameter / 2), normal_vector=(0.0, 1.0))
-
-    @classmethod
-    def bore(cls, diameter: float) -> Plane:
-        """Hole of the given diameter [mm] around the axis of an axisymmetric scene."""
-        if not diameter > 0:
-            raise SceneError("surface.diameter", diameter, "must be greater than 0 mm")
-        return cls(point=(0.0, diameter / 2), normal_vector=(0.0, -1.0))
 
     def gap(self, x: Any, y: Any) -> Any:
         nx, ny = self.normal_vector
@@ -61,3 +49,31 @@ class Plane(RigidSurface):
     @property
     def approach(self) -> tuple[float, float]:
         return self.normal_vector
+
+
+def rod(diameter: float) -> Plane:
+    """Shaft of the given diameter [mm] on the axis of an axisymmetric scene.
+
+    Raises
+    ------
+    SceneError
+        For a diameter that is not positive.
+    """
+    return _around_axis(diameter, outwards=1.0)
+
+
+def bore(diameter: float) -> Plane:
+    """Hole of the given diameter [mm] around the axis of an axisymmetric scene.
+
+    Raises
+    ------
+    SceneError
+        For a diameter that is not positive.
+    """
+    return _around_axis(diameter, outwards=-1.0)
+
+
+def _around_axis(diameter: float, *, outwards: float) -> Plane:
+    if not (isinstance(diameter, Real) and diameter > 0):
+        raise SceneError("surface.diameter", diameter, "must be greater than 0 mm")
+    return Plane(point=(0.0, diameter / 2), normal_vector=(0.0, outwards))

@@ -55,7 +55,6 @@ class Sphere(RigidSurface):
         return tuple(d / distance for d in apart)
 
     def motion(self, *place: Any) -> tuple[Any, ...]:
-        """Velocity of the body that carries the ball, over the ball's own speed along the track [-]."""
         x, y, _ = self._from_centre(*place)
         return 1.0 - y / self.track_radius, x / self.track_radius, 0.0 * x
 

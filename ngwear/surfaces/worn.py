@@ -46,7 +46,7 @@ class WornProfile:
     @property
     def along(self) -> Array:
         """Coordinate of each point along the surface [mm], shape (n,)."""
-        return self.spacing * (self.first + np.arange(len(self.depth)))
+        return self.spacing * (self.first + np.arange(len(self.depth), dtype=float))
 
     @property
     def area(self) -> float:
@@ -81,7 +81,7 @@ class WornProfile:
         wider = self._reaching(int(np.floor(ends.min())) - 1, int(np.ceil(ends.max())) + 1)
         points = wider.first + np.arange(len(wider.depth))
         # A hat function is the second difference of max(0, x): integrate the wear against that at every point.
-        ramp = sum(_against_ramps(points, *piece) for piece in zip(ends, depth, strict=True))
+        ramp = sum((_against_ramps(points, *piece) for piece in zip(ends, depth, strict=True)), np.zeros(len(points)))
         share = np.zeros(len(points))
         share[1:-1] = ramp[2:] - 2 * ramp[1:-1] + ramp[:-2]
         return replace(wider, depth=wider.depth + share)
@@ -115,7 +115,7 @@ class WornProfile:
             rest = last - first - turns * self.length
             first = self._wrapped(first)
             last = first + rest
-            images, added = self.length * np.arange(-2, 3), np.full(len(wider.depth), whole * turns.sum())
+            images, added = self.length * np.arange(-2, 3, dtype=float), np.full(len(wider.depth), whole * turns.sum())
 
         def passed(place: Array) -> Array:
             return np.interp(place, under.along + self.spacing / 2, until, left=0.0, right=whole)
@@ -136,7 +136,7 @@ class WornProfile:
         return replace(self, first=self.first - before, depth=np.pad(self.depth, (before, after)))
 
 
-def _against_ramps(points: Array, ends: Array, depth: Array) -> Array:
+def _against_ramps(points: NDArray[np.intp], ends: Array, depth: Array) -> Array:
     """``int depth max(0, x_j - x) dx`` over a piece along which the depth is linear, for each point x_j."""
     (a, b), (start, end) = ends, depth
     reach = np.clip(points, a, b) - a

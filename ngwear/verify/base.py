@@ -6,6 +6,9 @@ import time
 from dataclasses import dataclass
 from typing import Any, Literal
 
+Bound = Literal["near", "below", "above"]
+BAND: tuple[tuple[float, Bound], ...] = ((0.5, "above"), (3.0, "below"))  # what is stated over what is true
+
 
 @dataclass(frozen=True)
 class Check:
@@ -34,7 +37,7 @@ class Check:
     tolerance: float
     cpu_seconds: float
     absolute: bool = False
-    bound: Literal["near", "below", "above"] = "near"
+    bound: Bound = "near"
 
     @property
     def error(self) -> float:

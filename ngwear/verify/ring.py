@@ -25,7 +25,7 @@ from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import Axisymmetric
 from ngwear.geometry.outline import Outline
 from ngwear.materials import Hyperelastic, MooneyRivlin, NeoHooke
-from ngwear.surfaces import Plane
+from ngwear.surfaces import rod
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import mean, meshed
 from ngwear.verify.closed_forms import expanding_pressure
@@ -57,7 +57,7 @@ def pressurised(material: Hyperelastic, pressure: float) -> float:
 
 def on_rod(material: Hyperelastic, displacement: float) -> tuple[float, float]:
     """Mean and largest Cauchy contact pressure on a rod that expands the bore by ``displacement`` [MPa]."""
-    contact = OutlineContact("rod", ("bottom",), Plane.rod(2 * INNER), modulus=material.shear_modulus)
+    contact = OutlineContact("rod", ("bottom",), rod(2 * INNER), modulus=material.shear_modulus)
     problem = _problem(material, contact)
     advance(problem, {"rod approach [mm]": displacement}, STEPS)
     # The rod's surface: 2 pi times its radius times the length.

@@ -38,7 +38,7 @@ def worn_share(contour: Outline, profile: ContactProfile, amount: Array) -> Arra
     n = len(contour)
     ways = np.concatenate([[0.0], np.cumsum(np.tile(contour.lengths, 2))])
 
-    def way(t: Array) -> Array:
+    def way(t: Array | NDArray[np.intp]) -> Array:
         return np.interp(t, np.arange(2 * n + 1), ways)
 
     depth, covered = np.zeros(n), np.zeros(n, dtype=bool)

@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.effects.friction import FullSliding
+from ngwear.effects.friction import Friction
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
-from ngwear.geometry.body import Body
+from ngwear.errors import SceneError
+from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import recede
 from ngwear.surfaces import WornProfile
@@ -94,15 +95,15 @@ class Visit:
         Of the motion.
     vector : array or None
         Equilibrium of the last time.
-    pressure : array or None
-        Nominal pressure at the contact's nodes then [MPa].
+    pressure : array, shape (k,)
+        Nominal pressure at the contact's nodes then [MPa]; empty before it has been solved.
     """
 
     place: float
     weight: float
     direction: int
     vector: Array | None = None
-    pressure: Array | None = None
+    pressure: Array = field(default_factory=lambda: np.empty(0))
 
 
 @dataclass
@@ -125,7 +126,8 @@ class Fretting:
         In equilibrium at rest under its load.
     contact : OutlineContact
         That slides and has a worn profile.
-    friction : FullSliding
+    friction : Friction
+        That slides in full.
     elasticity : Elasticity
     motion : Motion
     control : JumpControl
@@ -144,7 +146,7 @@ class Fretting:
 
     problem: Problem
     contact: OutlineContact
-    friction: FullSliding
+    friction: Friction
     elasticity: Elasticity
     motion: Motion
     control: JumpControl
@@ -165,16 +167,23 @@ class Fretting:
             self._solve(visit, 0.0)
 
     @property
-    def body(self) -> Body:
+    def body(self) -> MeshedSection:
         """The worn part."""
-        return self.problem.body
+        return self.contact.section
+
+    @property
+    def counter(self) -> WornProfile:
+        """The worn profile of the surface; SceneError if the contact keeps none."""
+        if self.contact.counter is None:
+            raise SceneError("contact.counter", None, "both bodies wear: give the contact a worn profile")
+        return self.contact.counter
 
     def scar(self) -> Scar:
         """What both bodies look like now."""
         mine = self.body.contour.on(self.contact.edges)
         on = mine | np.roll(mine, 1)
         profile, worn = self.contact.profile(), self.body.contour.points[on]
-        return Scar(self.cycles, self._unworn[on], worn, self.contact.counter, profile.reference, profile.pressure)
+        return Scar(self.cycles, self._unworn[on], worn, self.counter, profile.reference, profile.pressure)
 
     def advance(self, goal: int) -> None:
         """Take one jump, as many cycles as its error allows, not beyond ``goal`` cycles."""
@@ -192,7 +201,7 @@ class Fretting:
 
     def _save(self) -> tuple[Outline, WornProfile, list[Visit], dict[str, float]]:
         numbers = {name: getattr(self, name) for name in ("drag", "worn", "counter_worn")}
-        return self.body.contour, self.contact.counter, [replace(visit) for visit in self._visits], numbers
+        return self.body.contour, self.counter, [replace(visit) for visit in self._visits], numbers
 
     def _restore(self, contour: Outline, counter: WornProfile, visits: list[Visit], numbers: dict[str, float]) -> None:
         self.body.move_to(contour)
@@ -241,7 +250,7 @@ class Fretting:
         ratio = contact.at_nodes(self.elasticity.volume_ratio())
         share = worn_share(contour, profile, motion.wear_rate * slip * profile.load / ratio)
         ends, pressure = contact.imprint()
-        counter = contact.counter.worn(ends, motion.counter_wear_rate * slip * pressure)
+        counter = self.counter.worn(ends, motion.counter_wear_rate * slip * pressure)
         self.body.move_to(recede(contour, share, contact.edges))
         contact.counter = counter
         self.worn += float(share.sum())

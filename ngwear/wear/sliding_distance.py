@@ -41,7 +41,7 @@ class Strokes:
     @property
     def starts(self) -> Array:
         """Sliding distance at which each begins [mm], shape (repeats,)."""
-        return self.start + self.cycle * np.arange(self.repeats)
+        return self.start + self.cycle * np.arange(self.repeats, dtype=float)
 
     def worn_distance(self, rate: WearRate) -> float:
         """``int k ds`` over the highest k [mm], exact: the way on which that k would wear as much."""

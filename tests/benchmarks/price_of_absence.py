@@ -14,7 +14,6 @@ Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
 import hashlib
 import json
 import os
-import pickle
 import statistics
 import subprocess
 import sys
@@ -137,14 +136,18 @@ def run(scene):
 
 def facts(state):
     """Unknowns, matrix entries, bytes at the material points and in the state that is kept, solver, and the result."""
+    from ngwear.files.archive import packed
+    from ngwear.loop.checkpoint import FORMAT, classes
+
     problem = state.stage.problem
+    stored = packed(state.to_data(), FORMAT, classes(state.stage.scene))
     matrix = problem.assemble()
     vector = problem.state.vec.FV().NumPy().tobytes()
     return {
         "unknowns": problem.space.ndof,
         "matrix entries": matrix.nze,
         "bytes at points": problem.points.nbytes,
-        "bytes of the state": len(pickle.dumps(state)),
+        "bytes of the state": sum(array.nbytes for array in stored.values()),
         "symmetric": problem.symmetric,
         "result": hashlib.sha256(vector).hexdigest()[:16],
     }

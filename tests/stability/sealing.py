@@ -21,7 +21,7 @@ from ngwear.loop.mounting import mount
 from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage
 from ngwear.materials import MooneyRivlin
-from ngwear.surfaces import Plane
+from ngwear.surfaces import Plane, rod
 from ngwear.verify import ring
 from ngwear.verify.builders import mean, meshed
 from ngwear.verify.closed_forms import expanding_pressure
@@ -33,8 +33,8 @@ PRESS = "fluid pressure [MPa]"
 
 def on_rod(interference, mu) -> list[Finding]:
     """A ring on a rod that expands its bore; the closed form has no friction."""
-    rod = OutlineContact("rod", ("bottom",), Plane.rod(2 * ring.INNER), modulus=RUBBER.shear_modulus)
-    terms = [Elasticity(RUBBER), rod] + ([FullSliding(rod, mu)] if mu else [])
+    shaft = OutlineContact("rod", ("bottom",), rod(2 * ring.INNER), modulus=RUBBER.shear_modulus)
+    terms = [Elasticity(RUBBER), shaft] + ([FullSliding(shaft, mu)] if mu else [])
     outline = Outline.rectangle((0.0, ring.LENGTH), (ring.INNER, ring.OUTER))
     held = FixedEdges(("left", "right"), y=False)
     problem = Problem(meshed(outline, ring.SIZE), Axisymmetric(), terms, supports=[held])

@@ -17,6 +17,7 @@ from ngwear.errors import GeometryError, ResultError
 from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import recede
+from ngwear.loop.checkpoint import load
 from ngwear.loop.run import run
 from ngwear.plots.wear import plot
 from ngwear.results.recorder import Folder
@@ -47,7 +48,7 @@ def test_killed_again_and_again_it_still_gets_there(tmp_path, write_sheet):
             break
         assert code == -signal.SIGKILL
         kills += 1
-        left = Folder(out, scene, resume=True).load()
+        left = load(Folder(out, scene, resume=True), scene)
         assert left is not None
         if left[0].strokes == 40:
             break
@@ -82,7 +83,7 @@ def test_the_shipped_seal_killed_and_resumed_ends_bit_for_bit_the_same(tmp_path,
 
 def test_result_and_checkpoint_cut_anywhere_are_refused(finished, sheet, tmp_path):
     rng = random.Random(7)
-    for name, reader in ((FIELDS, plot), (CHECKPOINT, lambda p: Folder(p, sheet, resume=True).load())):
+    for name, reader in ((FIELDS, plot), (CHECKPOINT, lambda p: load(Folder(p, sheet, resume=True), sheet))):
         whole = (finished / name).read_bytes()
         for _ in range(40):
             folder = tmp_path / "cut"

@@ -83,7 +83,7 @@ def test_resume_with_another_scene(tmp_path, finished, write_sheet, capsys):
 def test_resume_with_a_damaged_checkpoint(finished, sheet_file, capsys):
     (finished / CHECKPOINT).write_bytes(b"\x80\x05 not a pickle")
     assert run(sheet_file, finished, "--resume") == BAD_INPUT
-    assert "checkpoint.pkl cannot be read" in capsys.readouterr().err
+    assert "checkpoint.npz cannot be read" in capsys.readouterr().err
 
 
 def test_out_is_a_file_or_lies_in_one(tmp_path, sheet_file, capsys):

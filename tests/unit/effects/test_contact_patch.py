@@ -7,6 +7,7 @@ from scipy.spatial import Delaunay
 
 from ngwear.effects.contact_patch import Faces
 from ngwear.sliding.patch import contact_patch
+from ngwear.surfaces import Sphere
 
 RADIUS, HIGHEST = 3.0, 5.0
 
@@ -58,7 +59,7 @@ def under_hertz(edge, *, half_axes=(3.0, 2.5), scatter=0.0, seed=1):
     points = np.einsum("kc,ncd->nkd", share, corners[:, :, :2])
     p = HIGHEST * np.sqrt(np.maximum(1 - ((points / half_axes) ** 2).sum(axis=2), 0.0)).mean(axis=1)
     faces = Faces(corners, corners, p * (1 + scatter * rng.normal(size=len(p))))
-    ball = SimpleNamespace(radius=1e4, centre=(0.0, 0.0, 1e4))
+    ball = Sphere(radius=1e4, centre=(0.0, 0.0, 1e4))
     return SimpleNamespace(faces=lambda: faces, deformed=lambda places: places, surface=ball)
 
 

@@ -26,7 +26,7 @@ def to(error):
 @pytest.fixture
 def coarse_first(monkeypatch):
     """Begin so coarse that the first level cannot do."""
-    monkeypatch.setattr(adaptive, "first_across", lambda error: 2.0)
+    monkeypatch.setattr(adaptive, "first_across", lambda error, peak_error=None: 2.0)
 
 
 @pytest.mark.parametrize(
@@ -106,7 +106,7 @@ def test_interrupted_it_goes_on_where_it_was(tmp_path, coarse_first, monkeypatch
 
 def test_a_finest_level_that_is_not_enough_warns(tmp_path, monkeypatch):
     monkeypatch.setattr(adaptive, "MOST_ACROSS", 3.0)
-    monkeypatch.setattr(adaptive, "first_across", lambda error: 3.0)
+    monkeypatch.setattr(adaptive, "first_across", lambda error, peak_error=None: 3.0)
     summary = run_to_error(to(0.001), out=tmp_path).summary
     assert summary["levels"][-1][DEPTH] > 0.001
     assert "0.001 was asked for" in summary["warnings"][-1]
@@ -125,7 +125,7 @@ def test_a_level_keeps_what_is_not_about_the_error():
 
 @pytest.mark.parametrize(
     ("asked", "told"),
-    [("rough", "--accuracy = 'rough': must be one of"), ("1e-7", "is less than an estimate"), ("2", "must be below 1")],
+    [("rough", "accuracy = 'rough': must be one of"), ("1e-7", "is less than an estimate"), ("2", "must be below 1")],
 )
 def test_the_command_line_refuses(asked, told, sheet_file, tmp_path, capsys):
     assert main(["run", str(sheet_file), "--out", str(tmp_path / "out"), "--accuracy", asked]) == 2

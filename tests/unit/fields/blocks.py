@@ -8,13 +8,13 @@ import ngsolve as ng
 import numpy as np
 
 from ngwear.geometry.body import _outline
-from ngwear.geometry.meshed import Meshed
+from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Outline
 
 SIDES = ("bottom", "right", "top", "left")
 
 
-class Block(Meshed):
+class Block(MeshedSection):
     """The unit square in n x m cells, mapped to anywhere; the sides are named from the bottom counter-clockwise.
 
     A cell is a quadrilateral, or two triangles where ``halved(i, j)`` says so; ``without`` leaves elements out by their
@@ -59,6 +59,9 @@ class Block(Meshed):
         around = np.concatenate([line[:-1] for line in lines])
         names = tuple(name for name, line in zip(SIDES, lines, strict=True) for _ in line[:-1])
         self.base = self.contour = Outline(points[around], names, np.ones(len(around), dtype=bool))
+
+    def move_to(self, contour: Outline) -> None:
+        raise NotImplementedError
 
     @property
     def outline(self):

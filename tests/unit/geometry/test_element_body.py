@@ -1,4 +1,3 @@
-import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -55,10 +54,10 @@ def assert_same(first, second):
 
 
 @pytest.mark.parametrize("moved", [False, True], ids=["as meshed", "moved"])
-def test_a_pickled_body_comes_back_bit_for_bit(body, moved):
+def test_a_stored_body_comes_back_bit_for_bit(body, moved):
     if moved:
         body.move_to(sunk(body))
-    back = pickle.loads(pickle.dumps(body))
+    back = ElementBody.from_data(body.to_data())
     assert_same(body, back)
     if moved:
         assert np.abs(residual(back) - residual(ElementBody(body.cells))).max() > 1e-6, "the outline has moved"
@@ -90,8 +89,6 @@ def test_lost_elements_and_their_points_are_not_in_the_mesh(body):
     assert set(body.numbers) == set(np.flatnonzero(cells.living))
     kept = cells.corners[cells.living]
     assert set(body.vertices) == set(kept[kept >= 0])
-    _, triangles = body.triangles()
-    assert len(triangles) == cells.living.sum() + (cells.living & cells.quads).sum()
 
 
 def test_edges_that_are_lost_are_left_out_as_long_as_one_is_there(body):

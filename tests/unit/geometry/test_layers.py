@@ -7,7 +7,6 @@ from ngwear.errors import GeometryError
 from ngwear.geometry.element_body import ElementBody
 from ngwear.geometry.layers import layered
 from ngwear.geometry.outline import Outline
-from ngwear.geometry.outline_files import read_outline
 
 OPTIONS = {"depth": 0.3, "edge": 0.1, "coarse": 0.5, "grading": 0.3}
 
@@ -91,7 +90,7 @@ def test_edges_not_in_one_piece_are_refused(rectangle, edges):
 
 def test_layers_that_leave_the_section_between_its_sides_are_refused():
     """The shipped seal's worn face ends within its lower side: nothing beside the layers would stop them."""
-    contour = read_outline(Path(__file__).parents[3] / "geometries" / "torn_seal" / "contour.toml")
+    contour = Outline.read(Path(__file__).parents[3] / "geometries" / "torn_seal" / "contour.toml")
     edges = ("heel", "left ridges", "lip", "right ridges", "sealed face")
     with pytest.raises(GeometryError, match=r"layers of 3\.9 mm leave the section at .*: take fewer"):
         layered(contour, edges, depth=3.9, edge=0.1, coarse=0.3, grading=0.35)

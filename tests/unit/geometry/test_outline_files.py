@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline_files import read_outline
+from ngwear.geometry.outline import Outline
 
 CSV = "x [mm],y [mm],edge\n0,0,bottom\n4,0,right\n4,2,top\n0,2,left\n"
 RADIUS = 0.5
@@ -15,7 +15,7 @@ def write(tmp_path, name, text):
 
 
 def test_toml_outline(sheet_file):
-    box = read_outline(sheet_file.with_name("sheet.toml"))
+    box = Outline.read(sheet_file.with_name("sheet.toml"))
     assert box.area == pytest.approx(8.0, rel=1e-14)
     assert box.edge_names == ("bottom", "right", "top", "left")
     assert box.points[box.corners].tolist() == [[0, 0], [4, 0], [4, 2], [0, 2]]
@@ -40,18 +40,18 @@ def test_toml_with_a_mistake_is_refused_with_file_and_place(sheet_file, old, new
     assert old in text
     file.write_text(text.replace(old, new, 1))
     with pytest.raises(GeometryError, match=message) as found:
-        read_outline(file)
+        Outline.read(file)
     assert "sheet.toml" in str(found.value)
 
 
 @pytest.mark.parametrize("text", ["", "title = 'x'\n", "edge = 5\n", "[[edge]]\nname = 'a'\n", "edge = [5]\n"])
 def test_toml_without_points_is_refused(tmp_path, text):
     with pytest.raises(GeometryError, match=r"bad\.toml"):
-        read_outline(write(tmp_path, "bad.toml", text))
+        Outline.read(write(tmp_path, "bad.toml", text))
 
 
 def test_csv_without_corner_column_finds_the_corners(tmp_path):
-    box = read_outline(write(tmp_path, "box.csv", CSV))
+    box = Outline.read(write(tmp_path, "box.csv", CSV))
     assert box.area == pytest.approx(8.0)
     assert box.corners.all()
     assert box.names == ("bottom", "right", "top", "left")
@@ -60,7 +60,7 @@ def test_csv_without_corner_column_finds_the_corners(tmp_path):
 def test_csv_with_corner_column_is_obeyed(tmp_path):
     rows = CSV.splitlines()
     text = "\n".join([rows[0] + ",corner"] + [f"{row},{k % 2}" for k, row in enumerate(rows[1:])])
-    assert read_outline(write(tmp_path, "box.csv", text)).corners.tolist() == [False, True, False, True]
+    assert Outline.read(write(tmp_path, "box.csv", text)).corners.tolist() == [False, True, False, True]
 
 
 @pytest.mark.parametrize(
@@ -78,14 +78,14 @@ def test_csv_with_corner_column_is_obeyed(tmp_path):
 )
 def test_csv_with_a_mistake_is_refused_with_the_file(tmp_path, text, message):
     with pytest.raises(GeometryError, match=message) as found:
-        read_outline(write(tmp_path, "box.csv", text))
+        Outline.read(write(tmp_path, "box.csv", text))
     assert "box.csv" in str(found.value)
 
 
 def test_csv_as_a_spreadsheet_writes_it_with_a_byte_order_mark(tmp_path):
     file = tmp_path / "box.csv"
     file.write_text(CSV, encoding="utf-8-sig")
-    assert read_outline(file).area == pytest.approx(8.0)
+    assert Outline.read(file).area == pytest.approx(8.0)
 
 
 def step_file(tmp_path, *, mirrored=False):
@@ -119,7 +119,7 @@ def test_step_rectangle_with_a_rounded_corner(tmp_path, mirrored):
     exact = 8.0 - (1 - np.pi / 4) * RADIUS**2
     file, mass = step_file(tmp_path, mirrored=mirrored)
     assert mass == pytest.approx(exact, rel=1e-9)
-    box = read_outline(file)
+    box = Outline.read(file)
     assert box.area == pytest.approx(exact, rel=3e-4), "the polygon turns by at most 0.2 rad at a point"
     t = np.linspace(0, len(box), 50 * len(box), endpoint=False)
     x, y = box.at(t).T
@@ -128,7 +128,7 @@ def test_step_rectangle_with_a_rounded_corner(tmp_path, mirrored):
 
 
 def test_step_keeps_names_where_they_are(tmp_path):
-    box = read_outline(step_file(tmp_path)[0])
+    box = Outline.read(step_file(tmp_path)[0])
     assert set(box.names) == {"bottom", "right", "round", "top", "left"}
     middle = 0.5 * (box.points + np.roll(box.points, -1, axis=0))
     assert np.allclose(middle[box.on(("bottom",))][:, 1], 0)
@@ -142,21 +142,21 @@ def test_step_with_two_faces_or_tilted_is_refused(tmp_path):
     file = tmp_path / "solid.step"
     occ.Box((0, 0, 0), (1, 1, 1)).WriteStep(str(file))
     with pytest.raises(GeometryError, match=r"solid\.step.*6 faces.*one plane section"):
-        read_outline(file)
+        Outline.read(file)
     occ.WorkPlane().Rectangle(1, 1).Face().Rotate(occ.Axis((0, 0, 0), occ.X), 90).WriteStep(str(file))
     with pytest.raises(GeometryError, match=r"solid\.step.*x-y plane"):
-        read_outline(file)
+        Outline.read(file)
 
 
 def test_unknown_ending_names_the_known_ones(tmp_path):
     with pytest.raises(GeometryError, match=r"outline\.dxf.*\.toml.*\.csv.*\.step"):
-        read_outline(write(tmp_path, "outline.dxf", ""))
+        Outline.read(write(tmp_path, "outline.dxf", ""))
 
 
 @pytest.mark.parametrize("name", ["a.toml", "a.csv", "a.step"])
 def test_missing_file(tmp_path, name):
     with pytest.raises(GeometryError, match=rf"{name}: there is no such outline file"):
-        read_outline(tmp_path / name)
+        Outline.read(tmp_path / name)
 
 
 @pytest.mark.parametrize("name", ["a.toml", "a.csv", "a.step", "a.stp"])
@@ -164,4 +164,4 @@ def test_garbage_is_refused_with_the_file(tmp_path, name):
     file = tmp_path / name
     file.write_bytes(bytes(range(256)) * 8)
     with pytest.raises(GeometryError, match=name):
-        read_outline(file)
+        Outline.read(file)

@@ -1,7 +1,6 @@
 """Scenes whose counter-surface keeps a worn profile."""
 
 import math
-import pickle
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from ngwear.plots.wear import plot
 from ngwear.results.result_file import read_result
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.read_scene import read_scene
-from ngwear.surfaces import Cylinder, Plane, WornProfile
+from ngwear.surfaces import Cylinder, WornProfile, rod
 from ngwear.wear.sliding_distance import Strokes
 
 K, COUNTER_K = 1e-3, 5e-4
@@ -38,7 +37,7 @@ PLATE = (
 def test_a_point_loses_what_it_passes_on_a_plane():
     under = np.array([[-0.4, 0.0], [0.0, 0.4]])
     wear = np.array([[0.0, 0.3], [0.3, 0.0]])  # a triangle of area 0.12
-    worn = WornProfile.of(Plane.rod(2.0), 0.03).swept(under, wear, np.array([[0.0, 5.0], [5.0, 3.0]]))
+    worn = WornProfile.of(rod(2.0), 0.03).swept(under, wear, np.array([[0.0, 5.0], [5.0, 3.0]]))
     assert worn.area == pytest.approx(0.12 * 7.0, rel=1e-13)
     assert worn.at(np.array([-0.5, 1.0, 2.5, 4.0, 5.5])) == pytest.approx([0.0, 0.12, 0.12, 0.24, 0.0], abs=1e-12)
     assert worn.at(np.array([0.0, 3.0, 5.0])) == pytest.approx([0.06, 0.18, 0.12], rel=1e-3)
@@ -67,7 +66,7 @@ def test_ways_of_strokes_that_come_back_and_of_those_that_go_on():
 
 
 @pytest.mark.parametrize("changes", [(), TO_AND_FRO], ids=["turning", "to and fro"])
-def test_surface_loses_what_the_law_wears_off_it(tmp_path, write_sheet, changes):
+def test_surface_loses_what_the_law_wears_off_it(tmp_path, write_sheet, from_checkpoint, changes):
     scene = read_scene(write_sheet(tmp_path, WEARS, *changes))
     stepper = Stepper(scene)
     state, wanted = stepper.start(), 0.0
@@ -77,7 +76,7 @@ def test_surface_loses_what_the_law_wears_off_it(tmp_path, write_sheet, changes)
         wanted += COUNTER_K * 10.0 * sum(loads)
     assert state.counters["roller"].area == pytest.approx(wanted, rel=1e-10)
     assert state.counters["roller"].area == pytest.approx(COUNTER_K / K * state.ledger.worn, rel=0.02)
-    again = pickle.loads(pickle.dumps(state))
+    again = from_checkpoint(state, scene)
     assert again.counters["roller"].depth.tolist() == state.counters["roller"].depth.tolist()
 
 

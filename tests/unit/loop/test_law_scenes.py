@@ -2,7 +2,6 @@
 
 import csv
 import math
-import pickle
 from dataclasses import replace
 from pathlib import Path
 
@@ -236,7 +235,7 @@ def test_friction_by_speed_differs_between_strokes(tmp_path, write_sheet):
         assert row[MU] == pytest.approx(curve.mu(0.0, speed), rel=1e-9)
 
 
-def test_state_goes_on_the_same_after_it_was_saved(tmp_path, write_sheet):
+def test_state_goes_on_the_same_after_it_was_saved(tmp_path, write_sheet, from_checkpoint):
     rates = ("specific_wear_rate = 1.0e-3", f"specific_wear_rate = {RATES}")
     scene = read_scene(with_friction(tmp_path, write_sheet, PHASES, rates, *JUMPING))
     stepper = Stepper(scene)
@@ -244,7 +243,7 @@ def test_state_goes_on_the_same_after_it_was_saved(tmp_path, write_sheet):
     while state.strokes < 16:
         state = stepper.advance(state)
     ends = []
-    for going_on in (pickle.loads(pickle.dumps(state)), state):
+    for going_on in (from_checkpoint(state, scene), state):
         while going_on.strokes < 25:
             going_on = stepper.advance(going_on)
         ends.append((going_on.ledger.worn, going_on.reports[-1].coefficients["roller"], going_on.strokes))

@@ -19,7 +19,7 @@ from ngwear.materials import WLF, NeoHooke, PronySeries, Stiffened
 from ngwear.materials.library import filled_rubber
 from ngwear.scene.boundary import Support
 from ngwear.scene.read_scene import read_scene
-from ngwear.surfaces import Plane
+from ngwear.surfaces import bore
 
 SHIFT = 'shift = { law = "wlf", c1 = 17.44, c2 = 51.6, reference = 296.15 }'
 WARMER = "temperature = 303.15\n"
@@ -228,7 +228,7 @@ def test_forces_of_a_ring_with_memory_are_in_balance(remembering):
     ring = replace(
         remembering,
         axisymmetric=True,
-        contacts=(replace(remembering.contacts[0], surface=Plane.bore(9.9), force=None),),
+        contacts=(replace(remembering.contacts[0], surface=bore(9.9), force=None),),
         supports=(Support(edges=("left",), y=False),),
         part=replace(remembering.part, outline=lifted(remembering.part.outline, 3.0)),
     )

@@ -3,7 +3,6 @@ import errno
 import io
 import json
 import os
-import pickle
 import resource
 from dataclasses import replace
 
@@ -11,10 +10,11 @@ import numpy as np
 import pytest
 
 from ngwear.errors import ResultError
-from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES, SUMMARY
+from ngwear.files.result_folder import FIELDS, SERIES, SUMMARY
+from ngwear.loop.checkpoint import load
 from ngwear.plots.schemes import draw_schemes
 from ngwear.plots.wear import is_mirrored, plot, worn_edge
-from ngwear.results.recorder import Folder, Recorder, depths, fingerprint
+from ngwear.results.recorder import Folder, depths, fingerprint
 from ngwear.results.result_file import read_result
 from ngwear.scene.read_scene import read_scene
 
@@ -84,9 +84,9 @@ def test_interrupted_write_leaves_the_old_file(tmp_path, sheet):
 
 def test_fields_that_do_not_fit_on_the_disk(finished, sheet):
     """The limit on the size of a file is a full disk that needs no root; HDF5 has to pass the error on."""
-    recorder = pickle.loads((finished / CHECKPOINT).read_bytes())["recorder"]
-    before = (finished / FIELDS).read_bytes()
     folder = Folder(finished, sheet, resume=True)
+    _, recorder = load(folder, sheet)
+    before = (finished / FIELDS).read_bytes()
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) // 3, hard))
     try:
@@ -106,7 +106,8 @@ def test_result_file_holds_the_run(finished, sheet):
     assert [s.stroke for s in result.snapshots] == [0, 1, 2, 3, 4]
     assert result.kinds == ["stroke"]
     assert result.series["maximum depth [mm]"][-1] == summary["maximum depth [mm]"]
-    assert result.snapshots[0].mesh["triangles"].shape[1] == 3
+    assert result.snapshots[0].section["triangles"].shape[1] == 6
+    assert [s.stroke for s in result.snapshots if s.section] == [0, 4]
     assert result.at(2.2, "stroke").stroke == 2
 
 
@@ -180,33 +181,10 @@ def test_missing_result_file_says_what_to_give(tmp_path):
 
 
 def test_picture_that_cannot_be_written(finished):
-    (finished / "mesh.png").unlink(missing_ok=True)
-    (finished / "mesh.png").mkdir()
-    with pytest.raises(ResultError, match=r"mesh\.png cannot be written"):
+    (finished / "section.png").unlink()
+    (finished / "section.png").mkdir()
+    with pytest.raises(ResultError, match=r"section\.png cannot be written"):
         plot(finished)
-
-
-@pytest.mark.parametrize("damage", DAMAGE)
-def test_damaged_checkpoint_is_refused_with_the_remedy(finished, sheet, damage):
-    file = finished / CHECKPOINT
-    file.write_bytes(DAMAGE[damage](file.read_bytes()))
-    with pytest.raises(ResultError, match=r"checkpoint\.pkl cannot be read.*remove the folder and run again"):
-        Folder(finished, sheet, resume=True).load()
-
-
-@pytest.mark.parametrize("content", [[1, 2], {"scene": "x"}, None])
-def test_checkpoint_of_something_else_is_refused(finished, sheet, content):
-    (finished / CHECKPOINT).write_bytes(pickle.dumps(content))
-    with pytest.raises(ResultError, match=r"checkpoint\.pkl cannot be read"):
-        Folder(finished, sheet, resume=True).load()
-
-
-def test_folder_without_a_run_has_nothing_to_go_on_with(tmp_path, sheet):
-    assert Folder(tmp_path / "new", sheet, resume=True).load() is None
-
-
-def test_recorder_of_an_empty_run_is_plain_data(sheet):
-    assert pickle.loads(pickle.dumps(Recorder(sheet))).rows == []
 
 
 def test_outlines_that_are_their_own_mirror_image(rectangle, seal):

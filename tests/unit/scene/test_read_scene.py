@@ -24,7 +24,7 @@ def test_shipped_seal_is_read(seal):
     assert seal.axisymmetric
     assert seal.program.strokes == 200
     assert [s.direction for s in seal.program.cycle] == [-1.0, 1.0]
-    assert seal.material.shear_modulus == pytest.approx(16.0)
+    assert seal.part.material.shear_modulus == pytest.approx(16.0)
     assert [c.name for c in seal.followed] == ["rod"]
 
 

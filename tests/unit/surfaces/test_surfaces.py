@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from ngwear.errors import SceneError
-from ngwear.surfaces import Cylinder, Plane
+from ngwear.surfaces import Cylinder, Plane, bore, rod
 
 SURFACES = [
-    Plane.rod(22.2),
-    Plane.bore(29.6),
+    rod(22.2),
+    bore(29.6),
     Plane(point=(0.3, 0.4), normal_vector=(3.0, -4.0)),
     Cylinder(centre=(2.0, 4.0), radius=1.5, push=(1.0, -3.0)),
 ]
@@ -38,8 +38,8 @@ def test_approach_is_a_unit_vector_that_closes_the_gap(surface):
 
 
 def test_gap_signs_and_sizes():
-    assert Plane.rod(22.2).gap(5.0, 11.5) == pytest.approx(0.4)
-    assert Plane.bore(29.64).gap(5.0, 14.9) == pytest.approx(-0.08)
+    assert rod(22.2).gap(5.0, 11.5) == pytest.approx(0.4)
+    assert bore(29.64).gap(5.0, 14.9) == pytest.approx(-0.08)
     assert Cylinder(centre=(0.0, 0.0), radius=2.0).gap(3.0, 4.0) == pytest.approx(3.0)
     gaps = Cylinder(centre=(0.0, 0.0), radius=2.0).gap(np.array([3.0, 1.0]), np.array([4.0, 0.0]))
     assert gaps == pytest.approx([3.0, -1.0])
@@ -48,7 +48,7 @@ def test_gap_signs_and_sizes():
 @pytest.mark.parametrize("bad", [0.0, -1.0, math.nan])
 @pytest.mark.parametrize(
     "build",
-    [Plane.rod, Plane.bore, lambda v: Cylinder(centre=(0.0, 0.0), radius=v)],
+    [rod, bore, lambda v: Cylinder(centre=(0.0, 0.0), radius=v)],
     ids=["rod", "bore", "cylinder"],
 )
 def test_size_must_be_positive(build, bad):

@@ -13,7 +13,7 @@ from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.outline import Outline
 from ngwear.materials import NeoHooke
 from ngwear.plots.fretting import draw_scars
-from ngwear.surfaces import Cylinder, Plane, Sphere, WornProfile
+from ngwear.surfaces import Cylinder, Plane, Sphere, WornProfile, bore
 from ngwear.verify.builders import meshed
 from ngwear.wear.fretting import Fretting, Motion
 from ngwear.wear.jump_control import JumpControl
@@ -44,7 +44,7 @@ def test_uniform_wear_is_uniform_within_and_adds_up():
 
 @pytest.mark.parametrize(
     "surface",
-    [Plane.bore(8.0), Plane(point=(0.3, 0.4), normal_vector=(3, -4)), Cylinder(centre=(0.0, 6.0), radius=2.0)],
+    [bore(8.0), Plane(point=(0.3, 0.4), normal_vector=(3, -4)), Cylinder(centre=(0.0, 6.0), radius=2.0)],
 )
 def test_coordinate_along_a_surface_grows_with_its_slide(surface):
     ax, ay = surface.approach

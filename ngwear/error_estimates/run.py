@@ -1,0 +1,157 @@
+"""One verb: run a scene of any kind to its end, and state the errors of what it finds."""
+
+from __future__ import annotations
+
+import tempfile
+from contextlib import nullcontext
+from dataclasses import replace
+from pathlib import Path
+from typing import overload
+
+from ngwear.errors import SceneError
+from ngwear.loop.result import Result
+from ngwear.parallel.workers import Worker
+from ngwear.scene.accuracy import PRESETS, Accuracy
+from ngwear.scene.pin_scene import PinScene
+from ngwear.scene.scene import Scene
+from ngwear.sliding.run_pin import PinResult, run_pin
+
+
+@overload
+def run(
+    scene: Scene,
+    *,
+    out: Path | str | None = ...,
+    accuracy: str | float | Accuracy | None = ...,
+    alone: bool = ...,
+    resume: bool = ...,
+    progress: bool = ...,
+    throw: bool = ...,
+    worker: Worker | None = ...,
+) -> Result: ...
+@overload
+def run(
+    scene: Scene | PinScene,
+    *,
+    out: Path | str | None = ...,
+    accuracy: str | float | Accuracy | None = ...,
+    alone: bool = ...,
+    resume: bool = ...,
+    progress: bool = ...,
+    throw: bool = ...,
+    worker: Worker | None = ...,
+) -> Result | PinResult: ...
+def run(
+    scene: Scene | PinScene,
+    *,
+    out: Path | str | None = None,
+    accuracy: str | float | Accuracy | None = None,
+    alone: bool = False,
+    resume: bool = False,
+    progress: bool = True,
+    throw: bool = True,
+    worker: Worker | None = None,
+) -> Result | PinResult:
+    """Run a scene to its end; the result states the errors of what it found.
+
+    Coarser runs of the same scene beside it, in a second process, tell the errors (``error_estimates.coarser_runs``).
+
+    Parameters
+    ----------
+    scene : Scene or PinScene
+    out : path or None
+        Folder for ``series.csv``, ``result.h5``, ``summary.json``, the checkpoint and the figures; without one, nothing
+        is kept beyond the result.
+    accuracy : str, float, Accuracy or None
+        Instead of the scene's: a preset (``"draft"``, ``"engineering"``, ``"reference"``), or the relative error of the
+        greatest depth that the run shall state, such as 0.01.
+    alone : bool
+        No coarser runs: the error of the mesh is not known.
+    resume : bool
+        Go on with the run in the folder.
+    progress : bool
+        Show a progress bar.
+    throw : bool
+        Raise when the run gives up; else return a result that says why. What it had is saved either way.
+    worker : Worker or None
+        The second process, if one has begun already; it ends with the run.
+
+    Returns
+    -------
+    Result or PinResult
+
+    Raises
+    ------
+    SceneError
+        For an accuracy that does not go with the scene.
+    ResultError
+        If the folder cannot be used.
+    ConvergenceError, GeometryError, MeshError
+        When the run gives up and ``throw`` is True.
+    """
+    scene = with_accuracy(scene, accuracy)
+    if resume and out is None:
+        raise SceneError("run.resume", resume, "needs the folder of the earlier run: give out")
+    with nullcontext(out) if out is not None else tempfile.TemporaryDirectory(prefix="ngwear ") as folder:
+        path, keeps = Path(str(folder)), out is not None
+        if isinstance(scene, PinScene):
+            if worker is not None:
+                worker.end()
+            found = run_pin(scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps)
+            return found if keeps else replace(found, folder=None)
+        if alone:
+            from ngwear.loop.run import run as run_alone
+
+            if scene.accuracy.error is not None:
+                raise SceneError("run.alone", alone, "an accuracy.error is met by several runs: leave either out")
+            where = path if keeps else None
+            return run_alone(scene, out=where, resume=resume, progress=progress, throw=throw, figures=keeps)
+        if scene.accuracy.error is not None:
+            from ngwear.error_estimates.run_to_error import run_to_error
+
+            result = run_to_error(
+                scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps, worker=worker
+            )
+        else:
+            from ngwear.error_estimates.coarser_runs import run_stated
+
+            result = run_stated(
+                scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps, worker=worker
+            )
+        return result if keeps else replace(result, folder=None)
+
+
+def with_accuracy(scene: Scene | PinScene, accuracy: str | float | Accuracy | None) -> Scene | PinScene:
+    """The scene by a preset, to an error, or with other settings of accuracy; as it is for None.
+
+    Raises
+    ------
+    SceneError
+        For what is none of these, or a pin, whose accuracy is that of its mesh.
+    """
+    if accuracy is None:
+        return scene
+    if isinstance(scene, PinScene):
+        raise SceneError("accuracy", accuracy, "is for wear: the meshes of a pin are in its scene's [accuracy]")
+    if isinstance(accuracy, Accuracy):
+        return replace(scene, accuracy=accuracy)
+    try:
+        new = Accuracy.preset(accuracy) if accuracy in PRESETS else Accuracy(error=float(accuracy))
+    except SceneError:
+        raise
+    except (ValueError, TypeError):
+        raise SceneError("accuracy", accuracy, f"must be one of {list(PRESETS)}, or a number below 1") from None
+    return replace(scene, accuracy=scene.accuracy.given(new))
+
+
+def read_result(folder: Path | str) -> Result | PinResult:
+    """What a run, of any kind, has left in its folder.
+
+    Raises
+    ------
+    ResultError
+        If there is no run, or its files are damaged.
+    """
+    from ngwear.plots.pin import is_pin_run
+
+    return PinResult.read(folder) if is_pin_run(Path(folder)) else Result.read(folder)

@@ -1,0 +1,213 @@
+"""Plain data as text and arrays, and back, each bit as it was.
+
+Plain are numbers, text, None, lists, tuples, dicts, NumPy arrays, and objects of classes that both sides list by name.
+What is read can make nothing else: no name in a file is ever imported or called.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Iterable, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, Protocol, Self, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.errors import ResultError
+
+AnyArray = NDArray[Any]
+AS_THEY_ARE = (type(None), bool, int, float, str)
+KINDS = "biufcSUmM"  # of arrays: whatever has no Python objects in it
+SHORT = 8  # a list of numbers with fewer stays text
+LARGEST = 2**63  # whole numbers from here on stay text
+
+
+@runtime_checkable
+class Storable(Protocol):
+    """An object that says itself what of it is stored; dataclasses need not, all of their fields are."""
+
+    def to_data(self) -> dict[str, Any]:
+        """What ``from_data`` makes the same object of."""
+
+    @classmethod
+    def from_data(cls, data: dict[str, Any]) -> Self:
+        """The object again."""
+
+
+def by_name(classes: Iterable[type]) -> dict[str, type]:
+    """The classes by the names that they have in a file.
+
+    Raises
+    ------
+    TypeError
+        If one is no dataclass, no enumeration and not ``Storable``, or two have the same name.
+    """
+    named: dict[str, type] = {}
+    for cls in classes:
+        if not isinstance(cls, type) or not (is_dataclass(cls) or issubclass(cls, enum.Enum | Storable)):
+            raise TypeError(f"{cls!r} must be a dataclass or an enumeration")
+        if named.setdefault(cls.__name__, cls) is not cls:
+            raise TypeError(f"two classes are named {cls.__name__}")
+    return named
+
+
+class Packer:
+    """Turn values into what JSON can hold, and their arrays into a few long ones, one for each type of number.
+
+    Parameters
+    ----------
+    classes : iterable of type
+        Of the objects that there may be.
+    """
+
+    def __init__(self, classes: Iterable[type] = ()) -> None:
+        self._names = {cls: name for name, cls in by_name(classes).items()}
+        self._pieces: dict[str, list[AnyArray]] = {}
+        self._sizes: dict[str, int] = {}
+        self._done: dict[int, tuple[AnyArray, list[Any]]] = {}  # the array, too, or another one may get its id
+
+    def arrays(self) -> list[AnyArray]:
+        """What all values packed so far have in arrays."""
+        return [np.concatenate(pieces) for pieces in self._pieces.values()]
+
+    def pack(self, value: Any) -> Any:
+        """What JSON holds of a value.
+
+        Raises
+        ------
+        ResultError
+            If it is not plain, or an object of a class that is not listed.
+        """
+        kind = type(value)
+        if kind in AS_THEY_ARE:
+            return value
+        if kind is list:
+            return self._items(value)
+        if kind is tuple:
+            return {"tuple": self._items(value)}
+        if kind is dict:
+            if all(type(key) is str for key in value):
+                return {"dict": {key: self.pack(item) for key, item in value.items()}}
+            return {"pairs": [[self.pack(key), self.pack(item)] for key, item in value.items()]}
+        if kind is np.ndarray and value.dtype.kind in KINDS:
+            return {"array": self._put(value)}
+        if isinstance(value, np.generic) and value.dtype.kind in KINDS:
+            return {"scalar": self._put(np.asarray(value))}
+        name = self._names.get(kind)
+        if name is None:
+            raise ResultError(
+                f"an object of the class {kind.__module__}.{kind.__qualname__} cannot be written: files hold numbers, "
+                "text, lists, tuples, dicts, NumPy arrays, and objects of dataclasses that are listed as 'classes'"
+            )
+        if isinstance(value, enum.Enum):
+            return {"enum": [name, value.name]}
+        stored = (
+            value.to_data() if isinstance(value, Storable) else {f.name: getattr(value, f.name) for f in fields(value)}
+        )
+        return {"object": [name, {key: self.pack(item) for key, item in stored.items()}]}
+
+    def _items(self, values: list[Any] | tuple[Any, ...]) -> Any:
+        kinds = set(map(type, values))
+        if len(values) >= SHORT and (
+            kinds == {float} or (kinds == {int} and all(-LARGEST <= value < LARGEST for value in values))
+        ):
+            return {"numbers": self._put(np.array(values, dtype=float if kinds == {float} else np.int64))}
+        if kinds == {dict} and len(values) > 1:
+            keys = list(values[0])
+            if keys and all(type(key) is str for key in keys) and all(list(row) == keys for row in values):
+                return {"table": {key: self._items([row[key] for row in values]) for key in keys}}
+        return [self.pack(value) for value in values]
+
+    def _put(self, array: AnyArray) -> list[Any]:
+        """Where in the long arrays it is: type, first number, shape, order in memory."""
+        if id(array) in self._done:
+            return self._done[id(array)][1]
+        kind, order = array.dtype.str, "F" if array.flags.fnc else "C"
+        where = [kind, self._sizes.get(kind, 0), list(array.shape), order]
+        self._pieces.setdefault(kind, []).append(array.ravel(order="F" if array.flags.fnc else "C"))
+        self._sizes[kind] = self._sizes.get(kind, 0) + array.size
+        self._done[id(array)] = array, where
+        return where
+
+
+class Unpacker:
+    """Turn what ``Packer`` has made into the values again.
+
+    Parameters
+    ----------
+    arrays : iterable of array
+        The long ones.
+    classes : iterable of type
+        The only ones of which objects are made.
+    """
+
+    def __init__(self, arrays: Iterable[AnyArray], classes: Iterable[type] = ()) -> None:
+        self._classes = by_name(classes)
+        self._arrays = {array.dtype.str: array for array in arrays}
+        self._done: dict[tuple[Any, ...], AnyArray] = {}
+
+    def unpack(self, packed: Any) -> Any:
+        """The value.
+
+        Raises
+        ------
+        ValueError, KeyError, TypeError, AttributeError
+            If nothing that ``Packer`` makes looks like this, or another version of a class has been stored.
+        """
+        if type(packed) in AS_THEY_ARE:
+            return packed
+        if isinstance(packed, list):
+            return [self.unpack(item) for item in packed]
+        ((tag, content),) = packed.items()
+        match tag:
+            case "tuple":
+                return tuple(self.unpack(content))
+            case "dict":
+                return {key: self.unpack(item) for key, item in content.items()}
+            case "pairs":
+                return {self.unpack(key): self.unpack(item) for key, item in content}
+            case "numbers":
+                return self._take(content).tolist()
+            case "table":
+                columns = [self.unpack(column) for column in content.values()]
+                return [dict(zip(content, row, strict=True)) for row in zip(*columns, strict=True)]
+            case "array":
+                return self._take(content)
+            case "scalar":
+                return self._take(content)[()]
+            case "enum":
+                return self._class(content[0], enum.Enum)[content[1]]
+            case "object":
+                return self._object(*content)
+        raise ValueError(f"{tag!r} is no kind of plain data")
+
+    def _class(self, name: str, base: type = object) -> Any:
+        cls = self._classes.get(name)
+        if cls is None or not issubclass(cls, base):
+            raise ValueError(f"it holds an object of the class {name!r}, which has no place here")
+        return cls
+
+    def _object(self, name: str, packed: Mapping[str, Any]) -> Any:
+        cls = self._class(name)
+        stored = {key: self.unpack(item) for key, item in packed.items()}
+        if issubclass(cls, Storable):
+            return cls.from_data(stored)
+        wanted = [f.name for f in fields(cls)]
+        if set(stored) != set(wanted):
+            raise ValueError(f"the fields of its {name} are {sorted(stored)}, not {sorted(wanted)}")
+        made = object.__new__(cls)  # as it was: its constructor may round, order or work out anew
+        for key in wanted:
+            object.__setattr__(made, key, stored[key])
+        return made
+
+    def _take(self, where: list[Any]) -> AnyArray:
+        kind, first, shape, order = where
+        key = (kind, first, tuple(shape), order)
+        if key not in self._done:
+            size = int(np.prod(shape, dtype=object)) if shape else 1
+            whole = self._arrays[kind]
+            if first < 0 or size < 0 or first + size > len(whole):
+                raise ValueError("an array lies beyond what the file holds")
+            self._done[key] = whole[first : first + size].reshape(shape, order=order).copy(order="K")
+        return self._done[key]
