@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.body import Body
-from ngwear.loop.refinement import mounting_field, unworn_outline
+from ngwear.loop.refinement import mounting_field, unworn_outline, wanted_size
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.materials import PronySeries
