@@ -70,6 +70,8 @@ def _parser() -> argparse.ArgumentParser:
     instead = plot.add_mutually_exclusive_group()
     instead.add_argument("--against", type=Path, metavar="DIR", help="draw it beside another run of the same outline")
     instead.add_argument("--animate", action="store_true", help="also draw evolution.gif: outline and pressure moving")
+    which = "draw the loaded section alone, filled by this field, such as 'mean pressure'; a wrong name lists all"
+    instead.add_argument("--field", metavar="NAME", help=which)
     plot.set_defaults(do=_plot)
     compare = commands.add_parser("compare", help="lay a measured profile over a run's worn edge; fit the wear rate")
     compare.add_argument("folder", type=Path, metavar="DIR")
@@ -110,12 +112,14 @@ def _run(options: argparse.Namespace) -> int:
     from ngwear.parallel.workers import Worker
 
     worker = None if options.alone else Worker(*BESIDE)  # loads while this process does
-    from ngwear.error_estimates.run import run
     from ngwear.files.result_folder import COMPLETED
     from ngwear.scene.read_scene import read_scene
 
+    scene = read_scene(options.scene)  # a bad scene is told before the solver is loaded
+    from ngwear.error_estimates.run import run
+
     result = run(
-        read_scene(options.scene),
+        scene,
         out=options.out,
         accuracy=options.accuracy,
         alone=options.alone,
@@ -169,10 +173,11 @@ def _explain(options: argparse.Namespace) -> int:
     from tqdm import tqdm
 
     from ngwear.explanation.assumptions import Assumed
-    from ngwear.explanation.explain import explain
     from ngwear.scene.read_scene import read_scene
 
     scene, assumed = read_scene(options.scene), Assumed().replaced(options.assume)
+    from ngwear.explanation.explain import explain
+
     shown = sys.stderr.isatty()
     with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
         found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
@@ -205,9 +210,14 @@ def _cost(options: argparse.Namespace) -> int:
 def _plot(options: argparse.Namespace) -> int:
     from ngwear.plots.compare import compare
     from ngwear.plots.pin import is_pin_run, plot_pin
-    from ngwear.plots.wear import plot
+    from ngwear.plots.wear import plot, plot_section
 
     pin = is_pin_run(options.folder)
+    if options.field is not None:
+        if pin:
+            raise ResultError(f"{options.folder} is a run of a pin: it has no section of a part")
+        print(plot_section(options.folder, field=options.field))
+        return OK
     if pin and options.animate:
         raise ResultError(f"{options.folder} is a run of a pin: its outline does not wear, there is nothing to animate")
     draw = plot_pin if pin else plot

@@ -69,7 +69,7 @@ def typed(place: str, value: Any, kind: str) -> Any:
         return None
     for inner, one, example in _SEQUENCES:
         if kind.startswith((f"Sequence[{inner}]", f"tuple[{inner}")):
-            values = value.tolist() if hasattr(value, "tolist") else value
+            values: Any = value.tolist() if hasattr(value, "tolist") else value
             right = isinstance(values, Sequence) and not isinstance(values, str)
             if not right or (inner == "str" and not all(isinstance(v, str) for v in values)):
                 raise SceneError(place, value, f"must be a list of {one}, such as {example}")

@@ -219,8 +219,9 @@ class OutlineContact(UnilateralContact):
         return dofs, np.array(shapes)
 
     def set_worn(self, depth: Array) -> None:
-        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P."""
-        self._interpolate(self.worn, self._along_outline(depth))
+        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P, where any is kept."""
+        if self.worn is not None:
+            self._interpolate(self.worn, self._along_outline(depth))
 
     def _along_outline(self, values: Array) -> Array:
         ends = self.section.outline.t[self.positions]

@@ -48,8 +48,8 @@ from ngwear.parallel.workers import Worker, of_modules
 from ngwear.results.kept_sections import KeptSections
 from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
 from ngwear.results.recorder import TORN, Recorder, fingerprint
-from ngwear.results.richardson import Reading, relative_errors
-from ngwear.scene.accuracy import LEAST_ACROSS
+from ngwear.results.richardson import relative_errors
+from ngwear.scene.accuracy import LEAST_ACROSS, Tolerances
 from ngwear.scene.scene import Scene
 
 COARSER, LEAST_COARSER = 2.0, 1.2
@@ -57,23 +57,25 @@ FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's fol
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 HERE = DrawnHere()
+Histories = Mapping[str, Mapping[str, list[float]]]  # as of ``quantities_of_interest.reading``
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
     """The scene with elements of so many times the edge, and jumps that may err by as many times as much."""
-    accuracy = scene.accuracy
-    tolerances = {
-        "stress_error": min(1.0, factor**2 * accuracy.stress_error),
-        "wear_error": min(0.5, factor * accuracy.wear_error),
-        "longest_jump": min(1.0, factor * accuracy.longest_jump),
-        "depth_error": min(1.0, factor * accuracy.depth_error),
-    }
+    accuracy, old = scene.accuracy, scene.accuracy.tolerances
+    tolerances = Tolerances(
+        stress_error=min(1.0, factor**2 * old.stress_error),
+        wear_error=min(0.5, factor * old.wear_error),
+        longest_jump=min(1.0, factor * old.longest_jump),
+        depth_error=min(1.0, factor * old.depth_error),
+    )
     if accuracy.across is not None:
         across = max(accuracy.across / factor, LEAST_ACROSS)
-        return replace(scene, accuracy=accuracy.with_across(across, **tolerances))
-    patch = factor * accuracy.patch
-    lengths = {"patch": patch, "coarse": factor * accuracy.coarse, "mounting": max(accuracy.mounting, patch)}
-    changed = replace(accuracy, **lengths, **tolerances)
+        return replace(scene, accuracy=accuracy.with_across(across, **vars(tolerances)))
+    lengths = accuracy.lengths
+    patch = factor * lengths.patch
+    coarse, mounting = factor * lengths.coarse, max(lengths.mounting, patch)
+    changed = replace(accuracy, patch=patch, coarse=coarse, mounting=mounting, **vars(tolerances))
     lost = scene.deactivation
     if lost is not None:
         lost = replace(lost, depth=max(lost.depth, patch))  # at least one layer
@@ -97,9 +99,9 @@ def coarser_by(mine: float, other: float) -> float:
 def stated(
     scene: Scene,
     embedded: Mapping[str, float],
-    mine: Reading,
-    other: Reading,
-    coarsest: Reading | None = None,
+    mine: Histories,
+    other: Histories,
+    coarsest: Histories | None = None,
     *,
     ratio: float = COARSER,
 ) -> dict[str, float]:
@@ -144,7 +146,7 @@ def excess(errors: Mapping[str, float], asked: Mapping[str, float]) -> float:
     return max((errors[name] / limit for name, limit in asked.items() if name in errors), default=0.0)
 
 
-def growth(mine: Reading) -> float:
+def growth(mine: Histories) -> float:
     """The power of the area lost in all with which the greatest depth grows along the last half of a run, 0 to 1.
 
     Contacts that widen as they wear take more area for the same depth: 2/3 of a parabola's, 1/2 of a wedge.
@@ -215,11 +217,8 @@ class _Companions:
             self.worker.end()
 
     def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
-        """Let those run that have not left anything; laws of a script's own keep them in this process."""
-        if any(left_by(*run) is None for run in runs):
-            if not of_modules(self.scene):
-                _leave(runs)
-                return
+        """Let those run that have not left anything; with laws of a script's own this process does, once it can."""
+        if of_modules(self.scene) and any(left_by(*run) is None for run in runs):
             self.worker = self.worker or Worker(__name__)
             self.worker.do(_leave, runs)
             self.begun += runs
@@ -265,6 +264,8 @@ class _Companions:
 
     def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for what one of them leaves."""
+        if not of_modules(self.scene):
+            _leave([(scene, file)])
         while left_by(scene, file) is None and self.worker is not None and self.worker.alive and not self.worker.idle:
             time.sleep(POLL)
         return left_by(scene, file) or {"gave up": "it ended without a word"}
@@ -281,7 +282,7 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
 
 def left_of(result: Result) -> dict[str, Any]:
     """What a run that ended leaves as a companion: its readings, its element edge, and what it took."""
-    rows = result.recorder.rows
+    rows = result.records.rows
     read = {"reading": reading(rows), "element edge [mm]": element_edge(rows)}
     return read | {cost: result.summary[cost + unit] for cost, unit in COSTS}
 

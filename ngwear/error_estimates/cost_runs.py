@@ -163,7 +163,7 @@ def _wear(scene: Scene, progress: _Progress, sent: float) -> Measurement:
         progress.done = state.strokes / max(scene.program.strokes, 1)
 
     result = run(scene, throw=False, figures=False, on_step=on_step)
-    values = wear_values(scene, result.summary, result.recorder.rows) if result.error is None else {}
+    values = wear_values(scene, result.summary, result.records.rows) if result.error is None else {}
     solves = result.summary.get("solves", 0)
     return Measurement(status=result.status, message=result.message, values=values, solves=solves)
 

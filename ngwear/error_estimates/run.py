@@ -106,15 +106,18 @@ def run(
                 raise SceneError("run.alone", alone, "an accuracy.error is met by several runs: leave either out")
             where = path if keeps else None
             return run_alone(scene, out=where, resume=resume, progress=progress, throw=throw, figures=keeps)
-        how = {"out": path, "resume": resume, "progress": progress, "throw": throw, "figures": keeps, "worker": worker}
         if scene.accuracy.error is not None:
             from ngwear.error_estimates.run_to_error import run_to_error
 
-            result = run_to_error(scene, **how)
+            result = run_to_error(
+                scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps, worker=worker
+            )
         else:
             from ngwear.error_estimates.coarser_runs import run_stated
 
-            result = run_stated(scene, **how)
+            result = run_stated(
+                scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps, worker=worker
+            )
         return result if keeps else replace(result, folder=None)
 
 

@@ -120,23 +120,36 @@ def run_to_error(
     """
     folder, asked = OutFolder(Path(out), CHECKPOINT, resume=resume), asked_for(scene)
     done = _earlier(folder, scene, resume=resume)
-    at = (first_across(asked[DEPTH], asked.get(PEAK)), scene.accuracy.parts)
-    if done:
-        at = _after(done[-1], asked)
+    first = (first_across(asked[DEPTH], asked.get(PEAK)), scene.accuracy.parts)
+    at = (_after(done[-1], asked) if done else None) or first
     while True:
         level = at_level(scene, *at)
         _hand_down(folder, level, done)
         told = _Told(done, at, asked)
-        how = {"resume": resume, "progress": progress, "throw": throw, "figures": figures, "told": told}
-        result, worker = run_stated(level, out=out, enough=asked, worker=worker, **how), None
+        result = run_stated(
+            level,
+            out=out,
+            resume=resume,
+            progress=progress,
+            throw=throw,
+            figures=figures,
+            told=told,
+            enough=asked,
+            worker=worker,
+        )
+        worker = None
         finer = _after(told.mine, asked) if result.status == COMPLETED else None
         if finer is None:
             return result
         done.append(told.mine | {"left": left_of(result)})
-        notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
-        folder.replace(NOTES, lambda file, notes=notes: file.write(notes))
+        _note(folder, scene, done)
         _put_away(folder, told.mine)
         at = finer
+
+
+def _note(folder: OutFolder, scene: Scene, done: list[dict[str, Any]]) -> None:
+    notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
+    folder.replace(NOTES, lambda file: file.write(notes))
 
 
 def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:

@@ -110,12 +110,12 @@ def _mesh(scene: Scene) -> Knob:
         ladder = _scaled("element edge", "element edge over contact width [-]", 1 / scene.accuracy.across, MESH, 1.2)
         ladder = replace(ladder, labels=tuple(f"{1 / value:.3g} elements across" for value in ladder.values))
         return Knob(ladder, lambda scene, edge: replace(scene, accuracy=replace(scene.accuracy, across=1 / edge)))
-    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.patch, MESH, 1.2, unit=" mm")
+    ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.lengths.patch, MESH, 1.2, unit=" mm")
 
     def apply(scene: Scene, patch: float) -> Scene:
-        old = scene.accuracy
+        old = scene.accuracy.lengths
         coarse, mounting = old.coarse * patch / old.patch, max(old.mounting, patch)
-        return replace(scene, accuracy=replace(old, patch=patch, coarse=coarse, mounting=mounting))
+        return replace(scene, accuracy=replace(scene.accuracy, patch=patch, coarse=coarse, mounting=mounting))
 
     return Knob(ladder, apply)
 
@@ -123,7 +123,7 @@ def _mesh(scene: Scene) -> Knob:
 def _jumps(scene: Scene) -> Knob:
     """Tolerances of the cycle jump, and each stroke solved at the end."""
     each = scene.wear.step == "each"
-    start = EACH_BEGINS if each else scene.accuracy.wear_error
+    start = EACH_BEGINS if each else scene.accuracy.tolerances.wear_error
     values = [start * factor for factor in JUMPS if start * factor < 1] + [0.0]
     ladder = Ladder(
         name="jumps over strokes",
@@ -139,16 +139,16 @@ def _jumps(scene: Scene) -> Knob:
         if error == 0:
             return replace(scene, wear=replace(scene.wear, step="each"))
         wear = replace(scene.wear, step="jump")
-        old = scene.accuracy
+        old = scene.accuracy.tolerances
         depth = old.depth_error if old.depth_error == 1.0 else min(1.0, old.depth_error * error / old.wear_error)
-        accuracy = replace(old, wear_error=error, longest_jump=None, depth_error=depth)
+        accuracy = replace(scene.accuracy, wear_error=error, longest_jump=None, depth_error=depth)
         return replace(scene, wear=wear, accuracy=accuracy)
 
     return Knob(ladder, apply)
 
 
 def _stress(scene: Scene) -> Knob:
-    own = scene.accuracy.stress_error
+    own = scene.accuracy.tolerances.stress_error
     ladder = _scaled("stress criterion", "accuracy.stress_error [-]", own, STRESS, 0.3, below=1.0)
     ladder = replace(ladder, labels=tuple(f"stress_error {label}" for label in ladder.labels))
     return Knob(ladder, lambda scene, error: replace(scene, accuracy=replace(scene.accuracy, stress_error=error)))
@@ -183,7 +183,8 @@ def _orders(scene: Scene) -> list[Knob]:
 
     def apply(scene: Scene, value: float) -> Scene:
         old, order = scene.accuracy, round(1 / value)
-        return replace(scene, accuracy=replace(old, order=order, stress_error=old.stress_error ** (order / old.order)))
+        error = old.tolerances.stress_error ** (order / old.order)
+        return replace(scene, accuracy=replace(old, order=order, stress_error=error))
 
     return [Knob(ladder, apply)]
 

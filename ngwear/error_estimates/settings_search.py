@@ -226,7 +226,7 @@ def _confirmed(study: Study, target: float, budget: float, measure: Measure) -> 
         unfit.add(setting)
 
 
-def _cheapest_run(study: Study, target: float, predicted: Setting) -> Choice:
+def _cheapest_run(study: Study, target: float, predicted: Setting | None) -> Choice:
     """The cheapest run that reaches the target if there is one, else the setting that should."""
     fit = [s for s in study.front() if study.error(s, study.main) <= target]
     return Choice(target, fit[0], measured=True) if fit else Choice(target, predicted)

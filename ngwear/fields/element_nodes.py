@@ -31,35 +31,38 @@ class ElementNodes:
     """
 
     def __init__(self, mesh: ng.Mesh) -> None:
-        elements = list(mesh.Elements(ng.VOL))
-        corners = {n: [[v.nr for v in e.vertices] for e in elements if len(e.vertices) == n] for n in (3, 4)}
-        of = {n: np.array(rows, dtype=np.int64).reshape(-1, n) for n, rows in corners.items()}
-        sides = np.concatenate([np.stack([c, np.roll(c, -1, axis=1)], axis=-1).reshape(-1, 2) for c in of.values()])
-        self._edges, number = np.unique(np.sort(sides, axis=1), axis=0, return_inverse=True)
+        vertices = mesh.ngmesh.Elements2D().NumPy()["nodes"].astype(np.int64) - 1
+        quads = vertices[:, 3] >= 0 if vertices.shape[1] > 3 else np.zeros(len(vertices), dtype=bool)
+        corners = vertices[~quads, :3], vertices[quads, :4].reshape(-1, 4)
+        sides = [np.stack([c, np.roll(c, -1, axis=1)], axis=-1).reshape(-1, 2) for c in corners]
         self._vertices = mesh.nv
-        middles = mesh.nv + number.ravel()
-        first, centre = 3 * len(of[3]), mesh.nv + len(self._edges)
-        self.triangles = np.hstack([of[3], middles[:first].reshape(-1, 3)])
-        centres = np.arange(centre, centre + len(of[4]))
-        self.quadrilaterals = np.hstack([of[4], middles[first:].reshape(-1, 4), centres[:, None]])
+        self._edges, number = np.unique(self._keys(np.concatenate(sides)), return_inverse=True)
+        middles, centre = mesh.nv + number, mesh.nv + len(self._edges)
+        centres = np.arange(centre, centre + len(corners[1]))
+        self.triangles = np.hstack([corners[0], middles[: 3 * len(corners[0])].reshape(-1, 3)])
+        self.quadrilaterals = np.hstack([corners[1], middles[3 * len(corners[0]) :].reshape(-1, 4), centres[:, None]])
         self.count = centre + len(centres)
-        self._lay_points(mesh, [len(e.vertices) for e in elements])
+        self._lay_points(mesh, quads)
 
-    def _lay_points(self, mesh: ng.Mesh, kinds: list[int]) -> None:
+    def _lay_points(self, mesh: ng.Mesh, quads: NDArray[np.bool_]) -> None:
         """Points of the elements, one after the other, at their nodes."""
         rules = {}
-        for n in set(kinds):
+        for n in {4 if quad else 3 for quad in quads.tolist()}:
             at = np.array(CORNERS[n])
             at = np.vstack([at, 0.5 * (at + np.roll(at, -1, axis=0)), *([at.mean(axis=0)] if n == 4 else [])])
             rules[TYPES[2][n]] = ng.IntegrationRule([tuple(p) for p in at.tolist()], [1.0] * len(at))
         self._points = mesh.MapToAllElements(rules, ng.VOL)
-        rows = {3: iter(self.triangles), 4: iter(self.quadrilaterals)}
-        self._nodes = np.concatenate([next(rows[n]) for n in kinds])
+        nodes = np.full((len(quads), 9), -1)
+        nodes[~quads, :6], nodes[quads] = self.triangles, self.quadrilaterals
+        self._nodes = nodes[nodes >= 0]
+
+    def _keys(self, ends: Index) -> Index:
+        """One number for each pair of vertices, shape (m,)."""
+        return ends.min(axis=1) * self._vertices + ends.max(axis=1)
 
     def middle(self, ends: Index) -> Index:
         """The node between the two vertices of each mesh edge, shape (m, 2)."""
-        keys, asked = (np.sort(pairs, axis=1) @ [self._vertices, 1] for pairs in (self._edges, ends))
-        return self._vertices + np.searchsorted(keys, asked)
+        return self._vertices + np.searchsorted(self._edges, self._keys(ends))
 
     def values(self, field: ng.CoefficientFunction) -> Array:
         """Values at the nodes of a field that is continuous, shape (count, k)."""

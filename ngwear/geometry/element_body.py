@@ -14,7 +14,7 @@ from ngwear.errors import MeshError
 from ngwear.geometry.cells import HOLE, Cells
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.meshed_section import BoundaryEdges, MeshedSection
-from ngwear.geometry.outline import Array, Outline
+from ngwear.geometry.outline import Outline
 
 Index = NDArray[np.intp]
 FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded
@@ -67,15 +67,6 @@ class ElementBody(MeshedSection):
     @property
     def now(self) -> Cells:
         return self.cells.moved(self.contour.points)
-
-    def triangles(self) -> tuple[Array, Index]:
-        """As in ``MeshedSection``; two for each quadrilateral, and the places as they are now."""
-        cells = self.cells
-        number = np.zeros(len(cells.points), dtype=np.intp)
-        number[self.vertices] = np.arange(len(self.vertices))
-        corners = cells.corners[self.numbers]
-        quads = corners[corners[:, 3] >= 0]
-        return self.now.points[self.vertices], number[np.vstack([corners[:, :3], quads[:, [0, 2, 3]]])]
 
     def boundary(self, edges: Sequence[str]) -> ng.Region:
         """As in ``Meshed``; of edges that the section once had, those that it has lost are left out."""

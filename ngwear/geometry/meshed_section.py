@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.geometry import section
-from ngwear.geometry.cells import Cells
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.outline import Array, Outline
+
+if TYPE_CHECKING:  # only sections that lose elements have cells
+    from ngwear.geometry.cells import Cells
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,3 @@ class MeshedSection(Meshed):
     def now(self) -> Cells | None:
         """The elements where they are now, of a section that may lose some."""
         return None
-
-    def triangles(self) -> tuple[Array, NDArray[np.intp]]:
-        """Places of the mesh's vertices, and the triangles between them: for pictures."""
-        return section.mesh_arrays(self.mesh)

@@ -42,14 +42,16 @@ class ByPressure(FrictionLaw):
     limit: float = 0.0
     exponent: float = 1.0
 
-    depends_on_pressure = True
-
     def __post_init__(self) -> None:
         check_fields(self, "friction")
         require_number("friction.light", self.light)
         require_number("friction.limit", self.limit)
         require_number("friction.pressure", self.pressure, above=0.0)
         require_number("friction.exponent", self.exponent, above=0.0)
+
+    @property
+    def depends_on_pressure(self) -> bool:
+        return True
 
     def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
         return ()

@@ -45,14 +45,16 @@ class Stribeck(FrictionLaw):
     exponent: float = 1.0
     viscous: float = 0.0
 
-    depends_on_speed = True
-
     def __post_init__(self) -> None:
         check_fields(self, "friction")
         for name in ("boundary", "full", "viscous"):
             require_number(f"friction.{name}", getattr(self, name))
         for name in ("speed", "exponent"):
             require_number(f"friction.{name}", getattr(self, name), above=0.0)
+
+    @property
+    def depends_on_speed(self) -> bool:
+        return True
 
     def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
         if speed is None:

@@ -11,7 +11,7 @@ from ngwear.geometry.body import Body
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import SizeField
-from ngwear.loop.state import Ledger, Phase, State, StrokeReport
+from ngwear.loop.state import LastWear, Ledger, Phase, State, StrokeReport
 from ngwear.results.recorder import Folder, Recorder
 from ngwear.results.result_file import Snapshot
 from ngwear.scene.accuracy import Accuracy
@@ -26,6 +26,7 @@ PLAIN = (
     ContactProfile,
     Fate,
     JumpControl,
+    LastWear,
     Ledger,
     Outline,
     Phase,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -80,8 +81,8 @@ def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
     values = _Moved(state.contour, stage.body.contour)
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
-        if phase.pressure is not None:
-            phase.pressure, phase.mean = values(phase.pressure), values(phase.mean)
+        if phase.worn is not None:
+            phase.worn = replace(phase.worn, pressure=values(phase.worn.pressure), mean=values(phase.worn.mean))
     if state.depths is not None:
         state.depths = values(state.depths)
     state.stage = stage

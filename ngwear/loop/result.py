@@ -19,6 +19,7 @@ from ngwear.results.result_file import Snapshot, read_result
 
 if TYPE_CHECKING:
     import ngsolve as ng
+    from matplotlib.figure import Figure
 
     from ngwear.loop.state import State
     from ngwear.results.recorder import Recorder
@@ -177,9 +178,7 @@ class Result:
             name, found.kind, found.stroke, along, place, profile["pressure [MPa]"], profile["gap [mm]"]
         )
 
-    def plot(
-        self, field: str = "von Mises stress", *, stroke: float | None = None, kind: str | None = None
-    ) -> Figure:
+    def plot(self, field: str = "von Mises stress", *, stroke: float | None = None, kind: str | None = None) -> Figure:
         """Figure of the loaded section, filled by a field, between its surfaces, with the pressures along the contacts.
 
         Parameters
@@ -197,11 +196,8 @@ class Result:
             If there is no such field, or the stroke's section was not kept.
         """
         from ngwear.plots.loaded_section import draw_section
-        from ngwear.results.kept_sections import KeptSections
 
-        if self.recorder is None:
-            return draw_section(read_result(self._folder), field=field, stroke=stroke, kind=kind)
-        kept = KeptSections.in_run(self.recorder)
+        kept = read_result(self._folder) if self.recorder is None else self.recorder.sections
         return draw_section(kept, field=field, stroke=stroke, kind=kind)
 
     @property
@@ -233,11 +229,23 @@ class Result:
         return cauchy_stress(self._standing.stage)
 
     @property
-    def _standing(self) -> State:
-        """The state, with the part as it stands at the end of the last stroke."""
+    def records(self) -> Recorder:
+        """``recorder``; ResultError if the result is read from a folder."""
+        if self.recorder is None:
+            raise ResultError("rows are kept only by the run itself: 'series' reads them from the folder")
+        return self.recorder
+
+    @property
+    def end(self) -> State:
+        """``state``; ResultError if there is none."""
         if self.state is None:
             raise ResultError("mesh and fields are kept only by the run itself: run the scene in this process")
-        state = self.state
+        return self.state
+
+    @property
+    def _standing(self) -> State:
+        """The state, with the part as it stands at the end of the last stroke."""
+        state = self.end
         if state.phases:
             latest = state.reports[-1].phase if state.reports else -1
             state.stage.problem.state.vec.FV().NumPy()[:] = state.phases[latest].vector

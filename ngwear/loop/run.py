@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import logging
 import time
 from collections.abc import Callable
+from copy import copy
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -16,6 +18,8 @@ from ngwear.loop.stepper import Stepper
 from ngwear.results.kept_sections import KeptSections
 from ngwear.results.recorder import Folder, Recorder
 from ngwear.scene.scene import Scene
+
+log = logging.getLogger(__name__)
 
 
 class Drawing(Protocol):
@@ -110,6 +114,8 @@ def run(
                 bar.update(state, recorder)
         except (ConvergenceError, GeometryError, MeshError) as failure:
             error = failure
+    if error is not None and state is not None:
+        _keep_last(stepper, state, recorder)
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
@@ -118,7 +124,7 @@ def run(
         done = None if state is None else scene.program.counted(state.strokes)
         message = f"{'the part cannot be mounted' if done is None else f'after stroke {done}'}: {error}"
     times = {"wall time [s]": round(recorder.wall, 3), "CPU time [s]": round(recorder.cpu, 3)}
-    summary = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
+    summary: dict[str, Any] = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
         summary["error estimates"] |= by_time_step
@@ -146,6 +152,19 @@ def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, 
     recorder.add(state, wall=recorder.wall)
     if folder is not None:
         save(folder, state, recorder)
+
+
+def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
+    """Keep the loaded section as it was when a run gave up: what there is to see tells why."""
+    phases, memory = state.phases, state.memory
+    state.phases, state.memory = list(phases), copy(memory)
+    try:
+        recorder.add_sections(stepper.look_ahead(state))
+    except (ConvergenceError, GeometryError, MeshError) as error:
+        log.info("the last section is not kept: %s", error)
+    finally:
+        state.phases, state.memory = phases, memory
+        stepper.stand(state)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
@@ -190,7 +209,8 @@ class _Bar:
         from tqdm import tqdm
 
         self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
-        self._scene, self._bar = scene, None
+        self._scene = scene
+        self._bar: Any = None
 
     def __enter__(self) -> _Bar:
         return self

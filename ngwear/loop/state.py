@@ -28,6 +28,29 @@ Array = NDArray[np.float64]
 FALLS = 1.7  # change of the rate of depth over a step, whose square counts as an error: see depth_ratio
 
 
+@dataclass(frozen=True)
+class LastWear:
+    """What a stroke of the cycle wore the last time; arrays of shape (contacts, n) are of the outline's points.
+
+    Attributes
+    ----------
+    pressure : array, shape (contacts, n)
+        Depth over way that each contact would wear with its pressure at the end of the last time and the highest wear
+        rate, ``k P / J`` [-]. Depths, not areas: a sharp lip's points come closer as it wears.
+    mean : array, shape (contacts, n)
+        The same of what the last time wore over its way, ``ways`` [-].
+    area : array, shape (contacts,)
+        Area over way that the last time wore [mm].
+    ways : array, shape (contacts,)
+        [mm].
+    """
+
+    pressure: Array
+    mean: Array
+    area: Array
+    ways: Array
+
+
 @dataclass
 class Phase:
     """What is kept of one stroke of the cycle, for the same stroke of the next one.
@@ -38,13 +61,7 @@ class Phase:
         Equilibrium of the last time.
     rate : array or None
         Its change per cycle, on the same mesh.
-    pressure : array, shape (contacts, n)
-        Depth over way that each contact would wear at the contour points with its pressure at the end of the last time
-        and the highest wear rate, ``k P / J`` [-]. Depths, not areas: a sharp lip's points come closer as it wears.
-    mean : array, shape (contacts, n), or None
-        The same of what the last time wore over its way, ``ways`` [-].
-    area : array, shape (contacts,), or None
-        Area over way that the last time wore [mm].
+    worn : LastWear or None
     error : float
         Of what the last time wore, relative [-]; infinite if it is not known.
     shares : dict of str to array, or None
@@ -53,10 +70,7 @@ class Phase:
 
     vector: Array
     rate: Array | None = None
-    pressure: Array | None = None
-    mean: Array | None = None
-    area: Array | None = None
-    ways: Array | None = None
+    worn: LastWear | None = None
     error: float = math.inf
     shares: dict[str, Array] | None = None
 
@@ -131,7 +145,7 @@ class State:
 
     ``depths``, shape (2, n), are the depth worn at the points of the outline and the sum of what its steps err by, with
     their signs [mm]. ``fatigue`` and ``strained`` are what each element has used up of its life, and what the present
-    cycle uses up so far [-], of a scene whose damage adds up over cycles.
+    cycle uses up so far [-], of a scene whose damage adds up over cycles; else they are empty.
     """
 
     stage: Stage
@@ -144,8 +158,8 @@ class State:
     counters: dict[str, WornProfile] = field(default_factory=dict)
     memory: CycleMemory | None = None
     reports: list[StrokeReport] = field(default_factory=list)
-    fatigue: Array | None = None
-    strained: Array | None = None
+    fatigue: Array = field(default_factory=lambda: np.empty(0))
+    strained: Array = field(default_factory=lambda: np.empty(0))
     across: float | None = None
 
     @property

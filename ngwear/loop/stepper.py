@@ -355,7 +355,7 @@ class Stepper:
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """What there is to see at the stroke's equilibrium."""
         stage = state.stage
-        kept = state.strokes + sliding.repeats in self.scene.kept
+        kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
         return StrokeReport(
             phase=index,
             last_stroke=state.strokes,

@@ -15,7 +15,7 @@ from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.outline import Outline, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
 from ngwear.loop.remeshing import remesh
-from ngwear.loop.state import State
+from ngwear.loop.state import LastWear, State
 from ngwear.scene.contact import Contact
 from ngwear.wear.archard import worn_share
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
@@ -73,8 +73,8 @@ class Wearing:
         none = np.zeros((count, n))
         wearing = cls(state, index, sliding, outline, np.ones(count), none, none, np.zeros(n))
         ways = wearing.ways
-        if scene.wear.scheme == "implicit" and phase.error <= CALM:
-            share = np.array([share_of_last(*pair) for pair in zip(ways, phase.ways, strict=True)])
+        if scene.wear.scheme == "implicit" and phase.worn is not None and phase.error <= CALM:
+            share = np.array([share_of_last(*pair) for pair in zip(ways, phase.worn.ways, strict=True)])
             depth = wearing._foreseen(index, sliding)
             share *= depth.any(axis=1)
             wearing.own, wearing.last = 1.0 - share, share[:, None] * depth
@@ -106,9 +106,11 @@ class Wearing:
 
         None where friction may stick: what has slipped may stick now.
         """
-        stage = self.state.stage
+        stage, worn = self.state.stage, self.state.phases[kind].worn
+        if worn is None:
+            return np.zeros_like(self.last)
         slides = np.array([not stage.contacts[c.name].slips_in_part for c in stage.scene.contacts])
-        return (slides * self._ways(sliding))[:, None] * self.state.phases[kind].mean
+        return (slides * self._ways(sliding))[:, None] * worn.mean
 
     def _ways(self, sliding: Strokes) -> Array:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
@@ -140,11 +142,12 @@ class Wearing:
         if self.state.stage.remembers:
             return
         width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last)
-        phase.pressure, phase.mean, phase.area, phase.ways = none.copy(), none, np.zeros(len(none)), np.zeros(len(none))
+        pressure, no_contact = none.copy(), np.zeros(len(none))
         for k, spec in enumerate(scene.contacts):
             if spec.wears:
                 profile, rate = self._rate(spec, {})
-                phase.pressure[k] = worn_share(self.outline, profile, rate * profile.weight) / width
+                pressure[k] = worn_share(self.outline, profile, rate * profile.weight) / width
+        phase.worn = LastWear(pressure=pressure, mean=none, area=no_contact, ways=no_contact)
 
     def _rate(self, spec: Contact, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
         """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-].
@@ -192,6 +195,7 @@ class Wearing:
             If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
         """
         state, outline, phase = self.state, self.outline, self.state.phases[self.index]
+        last = phase.worn
         stage, scene = state.stage, state.stage.scene
         halfway = self.halfway
         width = halfway.widths(scene.worn_edges)
@@ -214,23 +218,23 @@ class Wearing:
             amount = rate * profile.weight
             mine = worn_share(halfway, profile, amount) / width
             before = 1.0  # a depth of the last step's, on an outline that has shrunk or grown since
-            if phase.area is not None and phase.mean[k].any():
-                before = phase.area[k] / (phase.mean[k] * width).sum()
+            if last is not None and last.mean[k].any():
+                before = last.area[k] / (last.mean[k] * width).sum()
             area = (self.own[k] * ways[k] * mine + before * self.last[k]) * width
             whole[k] = area.sum() / ways[k]
             share += area
             pressure[k], mean[k] = mine, area / ways[k] / width
-            if phase.pressure is not None:
-                difference = area / width - 0.5 * ways[k] * (before * phase.pressure[k] + mine)
+            if last is not None:
+                difference = area / width - 0.5 * ways[k] * (before * last.pressure[k] + mine)
                 difference = profile.between_nodes(difference) * width
                 off += difference
-                err += difference * error_over_difference(ways[k], phase.ways[k] if self.own[k] < 1.0 else 0.0)
-        known, error = phase.pressure is not None, float(np.abs(off).sum())
+                err += difference * error_over_difference(ways[k], last.ways[k] if self.own[k] < 1.0 else 0.0)
+        known, error = last is not None, float(np.abs(off).sum())
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
             state.ledger.area_error += error
         self._book_depths(share / width, err / width)
-        phase.pressure, phase.mean, phase.area, phase.ways = pressure, mean, whole, ways
+        phase.worn = LastWear(pressure=pressure, mean=mean, area=whole, ways=ways)
         if scene.deactivation is not None:
             from ngwear.geometry.element_body import elements
             from ngwear.loop import lost_elements

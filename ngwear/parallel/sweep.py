@@ -118,8 +118,7 @@ def sweep(
     own = executor is None
     if own:
         _check_importable(function)
-    if own or folder is not None:
-        keys = [_digest(function, point) for point in points]
+    keys = [_digest(function, point) for point in points] if own or folder is not None else []
     store = None if folder is None else _Store(Path(folder), classes, resume=resume)
     outcomes: list[Outcome | None] = [None] * len(points)
     if store is not None and resume:
@@ -134,12 +133,12 @@ def sweep(
             outcomes[i] = Outcome(points[i], failure=result) if failed else Outcome(points[i], result)
             step()
 
-        if own:
+        if executor is None:
             _in_processes(function, points, waiting, workers or os.cpu_count() or 1, keep)
         else:
             for i, error in _feed(executor, function, points, deque(waiting), len(points), keep):
                 keep(i, Failure.of(error))
-    return outcomes
+    return [outcome for outcome in outcomes if outcome is not None]
 
 
 def _attempt(function: Callable[[Any], Any], point: Any) -> Any:
@@ -154,21 +153,21 @@ Keep = Callable[[int, Any], None]
 
 
 def _feed(
-    executor: Executor, function: Any, points: list, waiting: deque[int], most: int, keep: Keep
+    executor: Executor, function: Any, points: list[Any], waiting: deque[int], most: int, keep: Keep
 ) -> list[tuple[int, BaseException]]:
     """Work off ``waiting``, at most so many at a time, until done or broken; what a broken executor was at is returned.
 
     Only what is under way is lost with it: the rest stays in ``waiting``.
     """
-    running: dict[Future, int] = {}
+    running: dict[Future[Any], int] = {}
     lost: list[tuple[int, BaseException]] = []
     while running or (waiting and not lost):
         while waiting and not lost and len(running) < most:
             i = waiting.popleft()
             try:
                 running[executor.submit(_attempt, function, points[i])] = i
-            except BrokenExecutor as error:
-                lost.append((i, error))
+            except BrokenExecutor as broken:
+                lost.append((i, broken))
         done, _ = wait(running, return_when=FIRST_COMPLETED)
         for future in done:
             i, error = running.pop(future), future.exception()
@@ -179,7 +178,7 @@ def _feed(
     return lost
 
 
-def _in_processes(function: Any, points: list, waiting: Iterable[int], workers: int, keep: Keep) -> None:
+def _in_processes(function: Any, points: list[Any], waiting: Iterable[int], workers: int, keep: Keep) -> None:
     queue = deque(waiting)
     while queue:
         with one_thread_pool(min(workers, len(queue))) as pool:
@@ -234,7 +233,7 @@ def _digest(function: Any, point: Any) -> str:
     return hashlib.sha256(data.getvalue()).hexdigest()[:32]
 
 
-def _check(points: list, executor: Any, workers: Any, folder: Any, resume: bool) -> None:
+def _check(points: list[Any], executor: Any, workers: Any, folder: Any, resume: bool) -> None:
     if not points:
         raise SceneError("sweep.points", points, "give at least one point")
     if workers is not None and not (isinstance(workers, int) and workers >= 1):

@@ -150,6 +150,8 @@ def end_with_parent() -> None:
 
     tqdm.set_lock(threading.RLock())
     parent = parent_process()
+    if parent is None:
+        return
 
     def watch() -> None:
         parent.join()

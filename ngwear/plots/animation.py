@@ -128,9 +128,9 @@ def _line(axes: Axes, kind: str, colour: str) -> Any:
 
 def _curve(snapshot: Snapshot) -> tuple[Array, Array]:
     """Places and pressures of all contacts, sorted by x, with a gap between one contact and the next."""
-    x, p = [np.zeros(0)], [np.zeros(0)]
+    x, p, gap = [np.zeros(0)], [np.zeros(0)], np.array([np.nan])
     for profile in snapshot.profiles.values():
         order = np.argsort(profile["place [mm]"][:, 0])
-        x += [profile["place [mm]"][order, 0], [np.nan]]
-        p += [profile["pressure [MPa]"][order], [np.nan]]
+        x += [profile["place [mm]"][order, 0], gap]
+        p += [profile["pressure [MPa]"][order], gap]
     return np.concatenate(x), np.concatenate(p)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -22,9 +22,10 @@ LEVEL = 1e-9  # of a normal's component: below, a plane lies along an axis
 ROOM = 0.08  # of the length in contact, to either side of it
 
 
-def pressed(sections: Sequence[Section]) -> list[str]:
-    """Contacts that carry pressure in any of some states."""
-    names = dict.fromkeys(name for section in sections for name in section.contacts)
+def pressed(sections: Sequence[Section], surfaces: Iterable[str]) -> list[str]:
+    """Contacts that carry pressure in any of some states; those of the surfaces that are known come first."""
+    known = {name for section in sections for name in section.contacts}
+    names = [*(name for name in surfaces if name in known), *sorted(known - set(surfaces))]
     return [n for n in names if any(s.contacts[n].pressure.max(initial=0.0) > 0 for s in sections)]
 
 
@@ -45,7 +46,8 @@ def coordinate(name: str, surface: RigidSurface | None, contact: SectionContact)
 def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: Labelled) -> None:
     """Draw the pressure along one contact in some states, by their labels, where it is in contact."""
     low, high, top = [], [], 0.0
-    for colour, (label, section) in zip(COLOURS, states.items(), strict=False):
+    lines = [(2.2, 0.55)] * (len(states) - 1) + [(1.2, 1.0)]  # what has not changed shows both
+    for (label, section), colour, (width, alpha) in zip(states.items(), COLOURS, lines, strict=False):
         contact = section.contacts[name]
         along, title = coordinate(name, surface, contact)
         on = contact.pressure > 0
@@ -53,7 +55,8 @@ def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: L
             low.append(along[on].min())
             high.append(along[on].max())
         top = max(top, float(contact.pressure.max(initial=0.0)))
-        axes.plot(*_line(along, contact), color=colour, lw=1.3, label=label, solid_joinstyle="round")
+        x, p = _line(along, contact)
+        axes.plot(x, p, color=colour, label=label, lw=width, alpha=alpha, solid_joinstyle="round")
     room = ROOM * max(max(high) - min(low), 1e-6)
     axes.set_xlim(min(low) - room, max(high) + room)
     axes.set_ylim(0, 1.1 * top)

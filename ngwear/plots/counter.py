@@ -11,7 +11,7 @@ from ngwear.plots.style import COLOURS, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from ngwear.results.result_file import ResultFile
+    from ngwear.results.result_file import ResultFile, Snapshot
 
 ALONG, DEPTH = "counter-surface coordinate [mm]", "counter-surface depth [mm]"
 MARGIN = 0.1  # of the worn length, shown to either side of it
@@ -27,10 +27,7 @@ def counter_figure(result: ResultFile) -> Figure:
     """Depth worn off each counter-surface over its own coordinate after a quarter, a half and all of the strokes."""
     names, last = worn_counters(result), result.snapshots[-1]
     figure, axes = new_figure(len(names), (1.0,) * len(names), size=(8, 1 + 3.5 * len(names)), share=False)
-    nearest = {}
-    for wanted in (last.stroke // 4, last.stroke // 2, last.stroke):
-        snapshot = min(reversed(result.snapshots), key=lambda s, wanted=wanted: abs(s.stroke - wanted))
-        nearest[snapshot.stroke] = snapshot.profiles
+    nearest = {s.stroke: s.profiles for s in (_nearest(result, last.stroke // part) for part in (4, 2, 1))}
     for panel, name in zip(axes, names, strict=True):
         for colour, (stroke, profiles) in zip(COLOURS, nearest.items(), strict=False):
             along, depth = profiles[name][ALONG], profiles[name][DEPTH]
@@ -44,3 +41,7 @@ def counter_figure(result: ResultFile) -> Figure:
         panel.legend()
     axes[0].set_title(f"{result.scene}: depth worn off the counter-surface")
     return figure
+
+
+def _nearest(result: ResultFile, stroke: float) -> Snapshot:
+    return min(reversed(result.snapshots), key=lambda s: abs(s.stroke - stroke))

@@ -36,7 +36,8 @@ def fill(axes: Axes, section: Section, values: Array, *, cmap: str, norm: Normal
             offset = start + len(place) * np.arange(len(mine))[:, None, None]
             triangles.append((pieces + offset).reshape(-1, 3))
             start += len(place) * len(mine)
-    drawn = Triangulation(*np.concatenate(points).T, np.concatenate(triangles))
+    x, y = np.concatenate(points).T
+    drawn = Triangulation(x, y, np.concatenate(triangles))
     return axes.tripcolor(drawn, np.concatenate(colours), shading="gouraud", cmap=cmap, norm=norm)
 
 
@@ -87,15 +88,11 @@ def curves(points: Array, edges: Index) -> Path:
 
 def outline(section: Section, *, pieces: int = 4) -> list[Array]:
     """The border of the section as closed polygons, each edge in so many pieces."""
-    s = np.arange(pieces)[:, None] / pieces
+    s = np.arange(pieces) / pieces
     polygons = []
     for loop in section.loops():
         start, middle = section.points[loop[:, 0]], section.points[loop[:, 1]]
         end = np.roll(start, -1, axis=0)
-        parts = [f[None] * p[:, None] for f, p in zip(_parabola(s), (start, middle, end), strict=True)]
-        polygons.append(sum(parts).reshape(-1, 2))
+        shapes = np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=1)
+        polygons.append((shapes @ np.stack([start, middle, end], axis=1)).reshape(-1, 2))
     return polygons
-
-
-def _parabola(s: Array) -> tuple[Array, Array, Array]:
-    return (1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)

@@ -10,6 +10,7 @@ from ngwear.materials.calibrate import PronyFit, ShiftFit, TensionFit
 from ngwear.materials.measurements import Dma
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 DATA, FIT, OTHER = "#1b6ca8", "#d1495b", "#2e933c"
@@ -79,14 +80,14 @@ def draw_shift(fit: ShiftFit) -> Figure:
     return _finished(figure, top, bottom)
 
 
-def _panels() -> tuple[Figure, tuple]:
+def _panels() -> tuple[Figure, tuple[Axes, ...]]:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(7, 7), layout="constrained")
     return figure, tuple(figure.subplots(2, 1, height_ratios=(2, 1)))
 
 
-def _finished(figure: Figure, *axes: object) -> Figure:
+def _finished(figure: Figure, *axes: Axes) -> Figure:
     for axis in axes:
         axis.grid(alpha=0.3, which="both")
     axes[0].legend()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -23,7 +23,11 @@ def draw_scars(scars: Sequence[Scar]) -> Figure:
     colours = iter(COLOURS)
     for scar in scars:
         worn = bool(scar.depth.max() > 0)
-        style = {"color": next(colours) if worn else UNWORN, "ms": 3, "label": f"{scar.cycles:,} cycles"}
+        style: dict[str, Any] = {
+            "color": next(colours) if worn else UNWORN,
+            "ms": 3,
+            "label": f"{scar.cycles:,} cycles",
+        }
         if worn:
             order = np.argsort(scar.place[:, 0])
             part.plot(scar.place[order, 0], MICROMETRES * scar.depth[order], ".-", **style)

@@ -24,15 +24,16 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SECTION = "section.png"
-CLIPPED = 0.995  # share of the values within the colours: a sharp corner's stress has no bound
+CLIPPED = 0.99  # share of the values within the colours: a sharp corner's stress has no bound
 COLOUR_MAP = "viridis"
 FLUID, WET = "#cfe3f5", "#2a7fd0"
 FONT = 10.0  # points
 WIDTH = 10.67  # inches, of the figure
 TOP, BOTTOM, LEFT, RIGHT = 0.62, 0.52, 0.66, 0.15  # inches around the panels
 BAR, BESIDE, LABELS, TICKS = 0.16, 0.1, 0.85, 0.62  # colour bar, left of it, right of it; left of a panel of pressures
-NARROWEST, PANEL, GAP = 3.0, 1.0, 0.62  # panels of pressures: least width, least height, between two
+NARROWEST, PANEL, GAP = 3.0, 0.6, 0.62  # panels of pressures: least width, least height, between two
 FLAT = 0.42  # height over width of a view that is drawn above the pressures
+TICK_X, TICK_Y = 0.5, 0.3  # inches for a number on an axis of pressures
 STRIP, DISC, BARE = 0.36, 0.75, 0.12  # inches of view beside the section: with a plane, with a disc, with nothing
 
 
@@ -103,8 +104,9 @@ class _Picture:
     def draw(self, field: str, states: dict[str, Section], *, mesh: bool) -> Figure:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
+        from matplotlib.ticker import MaxNLocator
 
-        names = pressed(list(states.values()))
+        names = pressed(list(states.values()), self.kept.surfaces)
         layout = self._layout(len(names))
         figure = Figure(figsize=layout.size)
         FigureCanvasAgg(figure)
@@ -120,27 +122,38 @@ class _Picture:
         bar.set_label(field)
         bar.ax.grid(visible=False)
         panels = [place(*box) for box in layout.pressures]
-        for panel, name in zip(panels, names, strict=True):
+        for panel, name, box in zip(panels, names, layout.pressures, strict=True):
             draw_pressure(panel, name, self.kept.surfaces.get(name), states)
+            for axis, inches in ((panel.xaxis, box[2] / TICK_X), (panel.yaxis, box[3] / TICK_Y)):
+                axis.set_major_locator(MaxNLocator(nbins=max(2, int(inches)), steps=[1, 2, 5, 10]))
         if panels:
-            panels[0].legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, frameon=False, borderpad=0.1)
-            self._name_pressures(figure, layout)
+            corner = 1 - RIGHT / layout.size[0], 1 - 0.06 / layout.size[1]
+            figure.legend(
+                *panels[0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=corner, ncols=2, frameon=False
+            )
+            self._name_pressures(figure, layout, panels)
         pressure = self.section.fluid_pressure
-        stroke = f"{self.shown.kind} stroke" if len({s.kind for s in self.kept.snapshots}) > 1 else ""
+        stroke = self.shown.kind if len({s.kind for s in self.kept.snapshots}) > 1 else ""
         told = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
         title = f"{self.kept.scene}: {', '.join(filter(None, told))}"
         figure.text(left / layout.size[0], 1 - 0.12 / layout.size[1], title, va="top", fontsize=FONT + 2)
         return figure
 
-    def _name_pressures(self, figure: Figure, layout: _Layout) -> None:
+    def _name_pressures(self, figure: Figure, layout: _Layout, panels: list[Axes]) -> None:
+        """Write what the panels show left of the first ones, clear of the numbers there."""
         low = layout.pressures[-1][1]
         first = min(box[0] for box in layout.pressures)
         top = max(box[1] + box[3] for box in layout.pressures)
         wide, high = layout.size
+        left = [panel for panel, box in zip(panels, layout.pressures, strict=True) if box[0] == first]
+        numbers = [n for p in left for n in p.yaxis.get_major_formatter().format_ticks(list(p.get_yticks()))]
+        clear = 0.14 + FONT / 72 * 0.6 * max(map(len, numbers))
         text = "contact pressure [MPa]"
-        figure.text((first - TICKS + 0.05) / wide, 0.5 * (low + top) / high, text, rotation=90, va="center", ha="left")
+        figure.text((first - clear) / wide, 0.5 * (low + top) / high, text, rotation=90, va="center", ha="right")
 
     def _draw_section(self, axes: Axes, layout: _Layout, field: str, states: dict[str, Section], *, mesh: bool) -> Any:
+        from matplotlib.patheffects import withTickedStroke
+        from matplotlib.ticker import MaxNLocator
         from shapely import union_all
 
         section, window = self.section, layout.window
@@ -150,6 +163,8 @@ class _Picture:
         axes.grid(visible=False)
         axes.set_xlabel("x [mm]")
         axes.set_ylabel("y [mm]")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(MaxNLocator(nbins="auto", steps=[1, 2, 5, 10]))
         bodies = self._bodies(window)
         draw_bodies(axes, bodies, window)
         filled = self._fill(axes, field)
@@ -158,6 +173,9 @@ class _Picture:
         for state in list(states.values())[:-1]:
             _line(axes, _border(state), "0.25", 0.8, zorder=3.6, ls=(0, (3, 2)))
         _line(axes, _border(section), "k", 1.0, zorder=4)
+        if len(section.held):
+            hatch = withTickedStroke(spacing=6, angle=-135, length=0.6)
+            _line(axes, curves(section.points, section.held), "k", 0.8, zorder=3.8, path_effects=[hatch])
         rubber = _region(section)
         taken = [rubber]
         if section.fluid_pressure > 0:
@@ -224,21 +242,20 @@ class _Picture:
         if flat and panels:
             under = 1.45
             total = TOP + height + BOTTOM + 0.32 + under + BOTTOM
-            step = (WIDTH - LEFT - RIGHT + GAP) / panels
+            step = (width + GAP) / panels
             boxes = [(LEFT + k * step, BOTTOM, step - GAP, under) for k in range(panels)]
             return _Layout((WIDTH, total), (LEFT, total - TOP - height, width, height), boxes, window, inch)
         column = max(height, panels * (PANEL + GAP) - GAP)
         total = TOP + column + BOTTOM
         start = LEFT + width + BESIDE + BAR + LABELS + TICKS
         each = (column + GAP) / max(panels, 1)
-        boxes = [
-            (start, BOTTOM + column - (k + 1) * each + GAP, WIDTH - RIGHT - start, each - GAP) for k in range(panels)
-        ]
+        lows = [BOTTOM + column - (k + 1) * each + GAP for k in range(panels)]
+        boxes = [(start, low, WIDTH - RIGHT - start, each - GAP) for low in lows]
         middle = BOTTOM + 0.5 * (column - height)
         return _Layout((WIDTH, total), (LEFT, middle, width, height), boxes, window, inch)
 
     def _around(self, low: Array, high: Array) -> tuple[Array, Array]:
-        """How far bodies beside the section are [mm], and how much of them to show [inches]; (2, 2): low, high; x, y."""
+        """How far bodies beside the section are [mm], and how much of them to show [inches]: low and high, x and y."""
         from shapely import box
 
         gaps, rooms = np.zeros((2, 2)), np.full((2, 2), BARE)
@@ -267,7 +284,7 @@ def _border(section: Section) -> Any:
 def _line(axes: Axes, path: Any, colour: str, width: float, *, zorder: float, **style: Any) -> None:
     from matplotlib.patches import PathPatch
 
-    axes.add_patch(PathPatch(path, fill=False, edgecolor=colour, lw=width, zorder=zorder, **style))
+    axes.add_artist(PathPatch(path, fill=False, edgecolor=colour, lw=width, zorder=zorder, **style))
 
 
 def _region(section: Section) -> Any:

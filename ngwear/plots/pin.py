@@ -17,7 +17,9 @@ from ngwear.scene.pin_scene import KIND
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
+    from mpl_toolkits.mplot3d import Axes3D
 
 Array = NDArray[np.float64]
 WHOLE, SURFACE, INTERNAL = "#222222", "#1b6ca8", "#d1495b"
@@ -156,8 +158,8 @@ def contact_figure(result: PinFile) -> Figure:
     left.set_xlabel("sliding speed [mm/s]")
     left.set_ylabel("penetration [mm]", color=SURFACE)
     right.set_ylabel("contact area [mm²]", color=INTERNAL)
-    left.set_ylim(0, 1.25 * depth.get_ydata().max())
-    right.set_ylim(0, 1.6 * area.get_ydata().max())
+    left.set_ylim(0, 1.25 * series["penetration [mm]"].max())
+    right.set_ylim(0, 1.6 * series["contact area [mm²]"].max())
     left.grid(alpha=0.3, which="both")
     left.legend([depth, area], ["penetration", "contact area"], loc="lower left")
     return figure
@@ -182,7 +184,7 @@ def sheet_figure(result: PinFile, number: int) -> Figure:
     return figure
 
 
-def _draw_surface(axis: Axes, sheet: SheetPicture, thickness: float, colours: object) -> None:
+def _draw_surface(axis: Axes3D, sheet: SheetPicture, thickness: float, colours: ScalarMappable) -> None:
     from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 
     reach = np.ptp(sheet.edge[:, 0])
@@ -202,11 +204,11 @@ def _draw_surface(axis: Axes, sheet: SheetPicture, thickness: float, colours: ob
     axis.set_zlabel("z [mm]")
 
 
-def _draw_patch(axis: Axes, sheet: SheetPicture, colours: object) -> None:
+def _draw_patch(axis: Axes, sheet: SheetPicture, colours: ScalarMappable) -> None:
     from matplotlib.collections import PolyCollection
 
-    patch = PolyCollection(sheet.corners[sheet.loaded][..., :2], edgecolors="face", linewidths=0.2)
-    patch.set_facecolor(colours.to_rgba(sheet.pressure[sheet.loaded]))
+    patch = PolyCollection(list(sheet.corners[sheet.loaded][..., :2]), edgecolors="face", linewidths=0.2)
+    patch.set_facecolor(list(colours.to_rgba(sheet.pressure[sheet.loaded])))
     axis.add_collection(patch)
     edge = np.vstack([sheet.edge, sheet.edge[:1]])
     axis.plot(*edge.T, color="#d1495b", lw=1.5, label="contact's edge")

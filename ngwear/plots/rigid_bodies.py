@@ -102,9 +102,9 @@ def write_in(axes: Axes, text: str, free: Any, *, inch: float, fontsize: float, 
 
     if free.is_empty:
         return Polygon()
-    wide, high = 0.58 * fontsize / 72 * len(text) * inch, 1.05 * fontsize / 72 * inch
+    wide, high = (0.6 * len(text) + 0.6) * fontsize / 72 * inch, 1.3 * fontsize / 72 * inch
     left, low, right, top = free.bounds
-    x, y = (part.ravel() for part in np.meshgrid(np.linspace(left, right, 81), np.linspace(low, top, 81)))
+    x, y = (part.ravel() for part in np.meshgrid(np.linspace(left, right, 61), np.linspace(low, top, 61)))
     centre = free.centroid
     off = np.hypot(x - centre.x, y - centre.y) / np.hypot(right - left, top - low)
     prepare(free)

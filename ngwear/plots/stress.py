@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,8 +46,8 @@ def stress_figure(result: ResultFile) -> Figure:
     critical = critical_stress(result)
     # Rubber tears where it is pulled: the colours tell pulls apart, however much it is squeezed elsewhere.
     largest = max(float(np.nanmax(stress[inside], initial=LEAST)) for _, stress, inside in fields)
-    marked = critical is not None and critical < NEAR * largest
-    largest = max(largest, 1.05 * critical) if marked else largest
+    marked = critical if critical is not None and critical < NEAR * largest else None
+    largest = largest if marked is None else max(largest, 1.05 * marked)
     scale = Normalize(-largest, largest)
     height = min(max(8.2 * (high - low)[1] / (high - low)[0], 0.6), 4.0)
     heights = (height,) * len(shown)
@@ -62,19 +62,19 @@ def stress_figure(result: ResultFile) -> Figure:
     axes[-1].set_xlabel("x [mm]")
     bar = figure.colorbar(drawn, ax=axes, extend="min", shrink=0.8, pad=0.02, aspect=30)
     name = "larger principal stress" if uses_principal(result) else "larger normal stress along x or y"
-    tears = "tears in one cycle at" if critical and result.damage[0] == Fatigue.name else "tears at"
-    beyond = "" if critical is None or marked else f"; {tears} {critical:.3g}"
+    tears = "tears in one cycle at" if result.damage is not None and result.damage[0] == Fatigue.name else "tears at"
+    beyond = "" if critical is None or marked is not None else f"; {tears} {critical:.3g}"
     bar.set_label(f"{name} [MPa]: pull is positive{beyond}")
-    if marked:
-        bar.ax.axhline(critical, color="k", lw=2)
-        bar.ax.text(-0.4, critical, f"{tears} {critical:.3g}", ha="right", va="center", fontsize=9, rotation=90)
+    if marked is not None:
+        bar.ax.axhline(marked, color="k", lw=2)
+        bar.ax.text(-0.4, marked, f"{tears} {marked:.3g}", ha="right", va="center", fontsize=9, rotation=90)
     figure.suptitle(f"{result.scene}: stress that tears, on the loaded section", fontsize=12)
     return figure
 
 
 def directions(result: ResultFile) -> list[str]:
     """One kind of stroke for each direction in which friction pulls: strokes of the same direction look alike."""
-    first = {}
+    first: dict[Any, str] = {}
     forces = tuple(f"{name} friction force x [N" for name in result.snapshots[0].profiles)  # N, or N/mm
     pulls = [c for c in result.series if c.startswith(forces)]
     for kind in result.kinds:
@@ -84,7 +84,7 @@ def directions(result: ResultFile) -> list[str]:
     return list(first.values())
 
 
-def _at(result: ResultFile, stroke: int, kind: str) -> Snapshot:
+def _at(result: ResultFile, stroke: float, kind: str) -> Snapshot:
     """The latest snapshot with elements of a kind, at a stroke if it has been kept there."""
     mine = [s for s in result.snapshots if s.elements and s.kind == kind]
     return min(reversed(mine), key=lambda s: abs(s.stroke - stroke))
@@ -97,8 +97,8 @@ def uses_principal(result: ResultFile) -> bool:
 
 def critical_stress(result: ResultFile) -> float | None:
     """The stress that tears an element at once [MPa]; None where none does."""
-    known = result.damage is not None and result.damage[0] in (TensileNormalStress.name, *PRINCIPAL)
-    return result.damage[1] if known else None
+    name, critical = result.damage or ("", None)
+    return critical if name in (TensileNormalStress.name, *PRINCIPAL) else None
 
 
 def tensile(result: ResultFile, snapshot: Snapshot) -> Array:

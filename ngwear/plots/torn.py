@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -112,7 +112,7 @@ def ridge_figure(result: ResultFile) -> Figure:
     figure = Figure(figsize=(side * columns + 0.8, (side + 0.45) * rows + 1.1), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    legend = {}
+    legend: dict[str, Any] = {}
     for panel, snapshot in zip(axes.flat, kept, strict=False):
         draw_elements(panel, kept[0], snapshot, window)
         legend |= {c.get_label(): c for c in panel.collections if len(c.get_paths())}

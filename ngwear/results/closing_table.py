@@ -13,12 +13,14 @@ NOT_FOUND = {
     "unknowns",
     "element edge in the contact [mm]",
     "error asked for [-]",
+    "peak error asked for [-]",
+    "CPU time of all levels [s]",
     *TOOK,
 }
 
 
 def closing_table(summary: Mapping[str, Any]) -> str:
-    """Lay out a summary as text: name, value with unit, and the stated relative error where there is one.
+    """Lay out a summary as text: name with unit, value, and the stated relative error where there is one.
 
     Parameters
     ----------
@@ -34,14 +36,12 @@ def _lines(summary: Mapping[str, Any]) -> Iterator[str]:
     errors = summary.get("error estimates", {})
     for name, value in summary.items():
         if isinstance(value, int | float) and name not in NOT_FOUND and " of the " not in name:
-            quantity, unit = name.removesuffix("]").rpartition(" [")[::2] if name.endswith("]") else (name, "")
-            shown = f"{value:.6g} {'' if unit == '-' else unit}".rstrip()
-            error = _error(quantity, errors)
-            yield f"  {quantity:45s} {shown:>18s}" + ("" if error is None else f"   ± {100 * error:.2g} %")
+            error = _error(name.split(" [")[0], errors)
+            yield f"  {name:50s} {value:<12.6g}" + ("" if error is None else f" ± {100 * error:.2g} %")
     for name, value in errors.items():
         quantity = name.removesuffix(" [-]")
         if name.endswith(("width [-]", "force [-]")):
-            yield f"  {'error of the ' + quantity:45s} {'':>18s}   ± {100 * value:.2g} %"
+            yield f"  {quantity:50s} {'':12s} ± {100 * value:.2g} %"
     took = [f"{name.split(' [')[0]} {summary[name]:g}{_unit(name)}" for name in TOOK if name in summary]
     if took:
         yield f"  {', '.join(took)}"

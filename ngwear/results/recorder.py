@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -90,14 +90,14 @@ class Recorder:
             self.unworn = measured_at(self.scene) if plain else state.contour
             self.unworn_area = self.unworn.area
         for report in state.reports:
-            self.rows.append(self._row(state, report, wall))
+            self.rows.append(self._row(state, report, wall, self.unworn))
             self.snapshots.append(self._snapshot(report))
 
-    def _row(self, state: Any, report: Any, wall: float) -> dict[str, Any]:
+    def _row(self, state: Any, report: Any, wall: float, unworn: Outline) -> dict[str, Any]:
         scene = self.scene
         cycle = scene.program.cycle
         unit = force_unit(scene.axisymmetric)
-        depth = depths(self.unworn, report.contour)
+        depth = depths(unworn, report.contour)
         ledger = report.ledger
         row: dict[str, Any] = {
             "stroke [-]": scene.program.counted(report.last_stroke),
@@ -111,7 +111,7 @@ class Recorder:
             "error estimate of maximum depth [mm]": abs(ledger.depth_error),
         }
         for name in dict.fromkeys(scene.worn_edges):
-            row[f"depth at {name} [mm]"] = float(depth[self.unworn.on((name,))].max())
+            row[f"depth at {name} [mm]"] = float(depth[unworn.on((name,))].max())
         if report.cells is not None:
             row |= self._book(report)
         for contact, profile in report.contacts.items():
@@ -178,6 +178,14 @@ class Recorder:
             elements = {"points [mm]": cells.points, "corners": cells.corners, "fate": cells.fate} | report.loaded
         stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
         return Snapshot(stroke, kind, report.contour.points, profiles, report.section, elements, time)
+
+    def add_sections(self, reports: Sequence[Any]) -> None:
+        """Add the loaded sections of some strokes to the last snapshots of their kinds, if there are none yet."""
+        for report in reports:
+            kind = self.scene.program.cycle[report.phase].name
+            last = max((k for k, s in enumerate(self.snapshots) if s.kind == kind), default=None)
+            if last is not None and not self.snapshots[last].section:
+                self.snapshots[last] = replace(self.snapshots[last], section=report.section)
 
     @property
     def sections(self) -> KeptSections:
@@ -307,12 +315,12 @@ def _fill(h5: Any, recorder: Recorder, summary: dict[str, Any]) -> None:
     if damage is not None:
         h5.attrs["damage criterion"], h5.attrs["critical damage"] = damage.name, damage.critical
     contacts = h5.create_group("contacts")
-    for spec in scene.contacts:
+    for number, spec in enumerate(scene.contacts):
         group = subgroup(contacts, spec.name)
         rate, end = spec.wear_rate, scene.program.slid(scene.program.strokes)
         mean = rate.curve.mean(0.0, end) if rate.varies and end > 0 else rate.at(0.0)
         group.attrs["edges"], group.attrs[WEAR_RATE] = spec.edges, without_subnormals(mean)
-        group.attrs["surface"] = surface_text(spec.surface)
+        group.attrs["surface"], group.attrs["number"] = surface_text(spec.surface), number
         if spec.wear_law is not None:
             group.attrs["wear law"] = spec.wear_law.words
     put_series(h5, recorder.rows)

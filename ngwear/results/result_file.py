@@ -35,7 +35,7 @@ class Snapshot:
     outline: Array
     profiles: dict[str, dict[str, Array]]
     section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
-    elements: dict[str, Array] = field(default_factory=dict)
+    elements: dict[str, NDArray[Any]] = field(default_factory=dict)
     time: float = math.inf
 
 

@@ -69,7 +69,9 @@ def error_of_finest(
     last = np.subtract(fine, coarse)
     if coarsest is not None and _square(np.subtract(coarse, coarsest)) > FAR**2 * _square(fine):
         coarsest = None
-    seen = order if coarsest is None else order_seen(fine, coarse, coarsest, ratio=ratio)
+    if coarsest is None:
+        return math.sqrt(_square(last)) / (ratio**order - 1)
+    seen = order_seen(fine, coarse, coarsest, ratio=ratio)
     if seen is not None:
         return math.sqrt(_square(last)) / (ratio**seen - 1)
     weights = [1.0, ratio**-2, ratio**-4]

@@ -30,7 +30,7 @@ def surface_of(text: str) -> RigidSurface | None:
 
 
 def surfaces_of(h5: Any) -> dict[str, RigidSurface]:
-    """The surface of each contact in an open result file; those that it cannot say are left out."""
-    groups = h5.get("contacts", {}).values()
+    """The surface of each contact in an open result file, in the scene's order, of those that it can say."""
+    groups = sorted(h5.get("contacts", {}).values(), key=lambda group: group.attrs.get("number", 0))
     found = {name_of(group): surface_of(group.attrs.get("surface", '{"type": ""}')) for group in groups}
     return {name: surface for name, surface in found.items() if surface is not None}

@@ -61,8 +61,8 @@ def refuse_in_scene(scene: Any) -> None:
     require(scene.part.prony is not None or math.isinf(rest), "program.rest", rest, remedy)
 
     order = scene.accuracy.order
-    remedy = why_not_order(scene, order)
-    require(remedy is None, "accuracy.order", order, remedy or "")
+    why = why_not_order(scene, order)
+    require(why is None, "accuracy.order", order, why or "")
 
     if scene.deactivation is not None:
         _refuse_with_deactivation(scene)

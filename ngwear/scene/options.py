@@ -38,10 +38,10 @@ class Wear:
         check_fields(self, "wear")
         require(self.scheme in ("implicit", "explicit"), "wear.scheme", self.scheme, "must be 'implicit' or 'explicit'")
         require(self.step in ("jump", "fixed", "each"), "wear.step", self.step, "must be 'jump', 'fixed' or 'each'")
-        given = self.max_jump is not None
-        require(not given or self.max_jump >= 1, "wear.max_jump", self.max_jump, "must be at least 1")
+        most = self.max_jump
+        require(most is None or most >= 1, "wear.max_jump", most, "must be at least 1")
         says = "is missing: step = 'fixed' takes so many cycles at once"
-        require(given or self.step != "fixed", "wear.max_jump", self.max_jump, says)
+        require(most is not None or self.step != "fixed", "wear.max_jump", most, says)
         require(
             self.remesh in ("due", "limit", "never"), "wear.remesh", self.remesh, "must be 'due', 'limit' or 'never'"
         )

@@ -42,9 +42,11 @@ def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
     SceneError
         For an unknown law or key, or a value out of range.
     """
-    if not isinstance(value, dict):
-        return typed(place, value, "float")
-    kind, values = _chosen(place, value, FRICTION_LAWS)
+    return _friction_law(place, value, folder) if isinstance(value, dict) else typed(place, value, "float")
+
+
+def _friction_law(place: str, table: dict[str, Any], folder: Path) -> FrictionLaw:
+    kind, values = _chosen(place, table, FRICTION_LAWS)
     if kind == "product":
         return _product(place, values, folder)
     if kind == "lubrication" and "fitted" in values:
@@ -94,7 +96,7 @@ def _product(place: str, values: dict[str, Any], folder: Path) -> Product:
     factors = get(values, place, "factors")
     if not isinstance(factors, list) or not all(isinstance(factor, dict) for factor in factors):
         raise SceneError(f"{place}.factors", factors, "must be a list of laws, each a table with its law")
-    laws = tuple(read_friction(f"{place}.factors[{i}]", factor, folder) for i, factor in enumerate(factors))
+    laws = tuple(_friction_law(f"{place}.factors[{i}]", factor, folder) for i, factor in enumerate(factors))
     return _placed(f"{place}.", lambda: Product(factors=laws))
 
 

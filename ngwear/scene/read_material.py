@@ -33,7 +33,7 @@ def read_arms(table: dict[str, Any]) -> PronySeries:
     if not isinstance(table, dict):
         raise SceneError(place, table, "must be a table [material.prony]")
     table = {key: value for key, value in table.items() if key != "source"}
-    shift = None
+    shift: WLF | Arrhenius | None = None
     common = {"temperature", "shift", "smoothing"}
     if "compound" in table:
         known(f"{place}.", table, {"compound", *common})

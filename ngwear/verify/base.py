@@ -6,6 +6,9 @@ import time
 from dataclasses import dataclass
 from typing import Any, Literal
 
+Bound = Literal["near", "below", "above"]
+BAND: tuple[tuple[float, Bound], ...] = ((0.5, "above"), (3.0, "below"))  # what is stated over what is true
+
 
 @dataclass(frozen=True)
 class Check:
@@ -34,7 +37,7 @@ class Check:
     tolerance: float
     cpu_seconds: float
     absolute: bool = False
-    bound: Literal["near", "below", "above"] = "near"
+    bound: Bound = "near"
 
     @property
     def error(self) -> float:
@@ -71,6 +74,18 @@ class Check:
             "passed": self.passed,
             "cpu_seconds": round(float(self.cpu_seconds), 3),
         }
+
+
+class Checks(list[Check]):
+    """Checks of one or more cases; printed, one line each."""
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self))
+
+    @property
+    def passed(self) -> bool:
+        """Whether all of them have passed."""
+        return all(check.passed for check in self)
 
 
 class Stopwatch:

@@ -23,7 +23,7 @@ from dataclasses import replace
 import numpy as np
 
 from ngwear.materials import NeoHooke
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import Bound, Check, Stopwatch
 from ngwear.verify.wear_runs import (
     CONTACT,
     Book,
@@ -67,8 +67,8 @@ def run() -> list[Check]:
     clock, book, checks, depth = Stopwatch(), Book(), [], {}
     marks = tuple(round(1e3 * m / BLOCK.travel) for m in METRES)
 
-    def add(quantity: str, value: float, reference: float, tolerance: float, **options: str | bool) -> None:
-        checks.append(Check("block_on_ring", quantity, value, reference, tolerance, clock.seconds, **options))  # type: ignore[arg-type]
+    def add(quantity: str, value: float, reference: float, tolerance: float, bound: Bound = "near") -> None:
+        checks.append(Check("block_on_ring", quantity, value, reference, tolerance, clock.seconds, bound=bound))
 
     scene = BLOCK.scene("block on ring", marks)
     for state in steps(scene, book):

@@ -50,7 +50,7 @@ class QuadBlock(Meshed):
         return 1.0
 
 
-def mean(field: ng.CoefficientFunction, body: Body, edge: str) -> float:
+def mean(field: ng.CoefficientFunction, body: Meshed, edge: str) -> float:
     """Mean of a field along the named edge of the undeformed outline."""
     where = ng.ds(definedon=body.boundary((edge,)))
     return float(ng.Integrate(field * where, body.mesh) / ng.Integrate(ng.CF(1.0) * where, body.mesh))

@@ -11,6 +11,7 @@ from ngwear.equilibrium.newton import NewtonOptions, solve
 from ngwear.errors import ConvergenceError
 from ngwear.geometry.cells import Cells, Index, Mask, outlined
 from ngwear.geometry.element_body import ElementBody
+from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Array
 from ngwear.laws.damage import Criterion
 from ngwear.loop.stage import Stage
@@ -81,10 +82,10 @@ def held(
     )
     stage = Stage(scene, ElementBody(cells))
     phases = [Phase(np.zeros(stage.problem.space.ndof))]
-    return State(stage, phases, JumpControl(scene.accuracy.wear_error, longest=1))
+    return State(stage, phases, JumpControl(scene.accuracy.tolerances.wear_error, longest=1))
 
 
-def on_edge(body: ElementBody, edge: str) -> Index:
+def on_edge(body: MeshedSection, edge: str) -> Index:
     """Vertices of the mesh on a named edge."""
     return np.unique(body.outline.vertices[body.outline.on((edge,))])
 

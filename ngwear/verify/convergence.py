@@ -126,7 +126,8 @@ def _orders(
     kind: str, error_at: Callable[[float], tuple[float, ...]], sizes: tuple[float, ...], least: float = LEAST_ORDER
 ) -> list[Check]:
     """Orders of the displacement's error, and of its gradient's if there is one, one less."""
-    checks, last = [], ()
+    checks: list[Check] = []
+    last: tuple[float, ...] = ()
     for size in sizes:
         clock = Stopwatch()
         errors = error_at(size)

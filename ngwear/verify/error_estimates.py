@@ -44,7 +44,7 @@ from ngwear.sliding.pin import slide_pin
 from ngwear.sliding.run_pin import estimates as pin_estimates
 from ngwear.sliding.run_pin import readings as pin_readings
 from ngwear.verify import pin_on_plate
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import BAND, Check, Stopwatch
 from ngwear.verify.rod_seal import shipped_scene
 
 CASE = "error_estimates"
@@ -58,7 +58,6 @@ FINER = 1 / 4
 LEAK_FINER, PIN_FINER = 1 / 2, 1 / 2
 SPEEDS = (3.0, 1036.0)  # of the pin [mm/s]
 LEAST = 1e-3  # relative error that can be told from chance
-BAND = (0.5, 3.0)
 
 
 def run() -> Iterator[Check]:
@@ -75,21 +74,21 @@ def of_run(words: str, scene: Scene, factor: float) -> list[Check]:
     watch = Stopwatch()
     result, finest = (run_scene(level, figures=False) for level in (scene, scaled(scene, factor)))
     said = stated_of(result, scene)
-    true = relative_errors(reading(result.recorder.rows), reading(finest.recorder.rows))
+    true = relative_errors(reading(result.records.rows), reading(finest.records.rows))
     return effectivities(CASE, words, said, true, watch.seconds)
 
 
 def of_leak() -> list[Check]:
     """The rod seal's leak pressure, which the scene does not ask for: on meshes that resolve it."""
     scene = shipped_scene()
-    asked = replace(scene, fluid=replace(scene.fluid, leak_pressure=True))
+    asked = replace(scene, fluid=scene.fluid and replace(scene.fluid, leak_pressure=True))
     return [check for check in of_run(scene.name, asked, LEAK_FINER) if "leak pressure" in check.quantity]
 
 
 def stated_of(result: Result, scene: Scene) -> dict[str, float]:
     """What a run that ended would have stated beside its companions."""
     levels = [run_scene(coarser(scene, COARSER**power), figures=False) for power in (1, 2)]
-    mine, other, coarsest = (reading(r.recorder.rows) for r in (result, *levels))
+    mine, other, coarsest = (reading(r.records.rows) for r in (result, *levels))
     return stated(scene, result.summary["error estimates"], mine, other, coarsest)
 
 
@@ -111,6 +110,6 @@ def effectivities(
     for name, error in true.items():
         ratio = max(said[name], LEAST) / max(error, LEAST)
         label = f"{words}: stated over true error of the {name[:-4]}"
-        for limit, bound in zip(BAND, ("above", "below"), strict=True):
+        for limit, bound in BAND:
             checks.append(Check(case, f"{label}, {bound} {limit:g} [-]", ratio, limit, 0.0, seconds, bound=bound))
     return checks

@@ -25,7 +25,7 @@ import numpy as np
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.effects.friction import FullSliding
+from ngwear.effects.friction import Friction, FullSliding
 from ngwear.effects.stick_slip import StickSlip
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
@@ -51,7 +51,7 @@ WAY, STEPS = 0.006, 15  # of the resolved stick and slip
 SLIDE = "cylinder slide [mm]"
 
 
-def pressed(reach: float, *, sticks: bool) -> tuple[Problem, OutlineContact, FullSliding | StickSlip, Elasticity]:
+def pressed(reach: float, *, sticks: bool) -> tuple[Problem, OutlineContact, Friction, Elasticity]:
     """The problem under its normal load."""
     seeds = np.arange(-reach, reach + SIZE / 2, SIZE)
     body = meshed(
@@ -67,7 +67,7 @@ def pressed(reach: float, *, sticks: bool) -> tuple[Problem, OutlineContact, Ful
         counter=WornProfile(SIZE),
         modulus=MATERIAL.shear_modulus,
     )
-    friction = StickSlip(contact, MU) if sticks else FullSliding(contact, MU)
+    friction: Friction = StickSlip(contact, MU) if sticks else FullSliding(contact, MU)
     elasticity = Elasticity(MATERIAL)
     problem = Problem(body, PlaneStrain(), [elasticity, contact, friction], supports=[FixedEdges(("bottom",))])
     squared = 4 * LOAD * RADIUS / (math.pi * MATERIAL.plane_strain_modulus)  # Hertz' half width

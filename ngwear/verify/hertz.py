@@ -51,8 +51,8 @@ def _pressed(order: int) -> list[Check]:
     seeds = np.stack([at, np.full(len(at), BLOCK)], axis=1)
     body = meshed(Outline.rectangle((0.0, BLOCK), (0.0, BLOCK)), COARSE, seeds, size, grading)
     cylinder = Cylinder(centre=(0.0, BLOCK + RADIUS), radius=RADIUS)
-    how = {"modulus": MATERIAL.shear_modulus, "order": order}
-    contact = OutlineContact("cylinder", ("top",), cylinder, force_controlled=True, **how)
+    modulus = MATERIAL.shear_modulus
+    contact = OutlineContact("cylinder", ("top",), cylinder, force_controlled=True, modulus=modulus, order=order)
     supports = [FixedEdges(("bottom",)), FixedEdges(("left",), y=False)]
     terms = [Elasticity(MATERIAL, order=order), contact]
     problem = Problem(body, PlaneStrain(), terms, supports=supports, order=order)

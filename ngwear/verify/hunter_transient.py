@@ -23,7 +23,7 @@ import numpy as np
 from ngwear.materials import PronySeries
 from ngwear.sliding.asperity import Asperity, Slide, slide
 from ngwear.sliding.passing import slide_in_time
-from ngwear.verify.base import Check
+from ngwear.verify.base import Bound, Check
 from ngwear.verify.hunter import ARM, LOAD, LONG_TERM, RADIUS, RUBBER, SCALE, SPEEDS, TIME, closed_form
 
 FINENESS = 8.0  # of the march
@@ -49,7 +49,7 @@ def run() -> list[Check]:
     asperity = Asperity(material=RUBBER, series=arms, radius=SCALE * RADIUS, load=LOAD / SCALE)
     checks: list[Check] = []
 
-    def check(quantity: str, value: float, wanted: float, tolerance: float, seconds: float, bound: str) -> None:
+    def check(quantity: str, value: float, wanted: float, tolerance: float, seconds: float, bound: Bound) -> None:
         checks.append(Check("hunter_transient", quantity, value, wanted, tolerance, seconds, bound=bound))
 
     marched = solved = 0.0

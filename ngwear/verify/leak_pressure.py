@@ -60,7 +60,7 @@ def scene() -> Scene:
 def run() -> list[Check]:
     """Each pressure."""
     watch = Stopwatch()
-    rows = run_scene(scene(), figures=False).recorder.rows
+    rows = run_scene(scene(), figures=False).records.rows
     squeezed = RUBBER.shear * (SQUEEZED**-2 - SQUEEZED**2)
     return [
         Check(

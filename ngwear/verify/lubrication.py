@@ -95,7 +95,7 @@ def run() -> list[Check]:
         checks.append(Check(CASE, quantity, value, reference, tolerance, clock.seconds, **options))
 
     result = run_scene(scene(PHASES, RATES), figures=False)
-    rows = [row for row in result.recorder.rows if row["strokes in one solve [-]"] > 0]
+    rows = [row for row in result.records.rows if row["strokes in one solve [-]"] > 0]
     off = [
         abs(row["plane friction force x [N/mm]"] / row["plane force y [N/mm]"]) - PHASES.mu(middle(row)) for row in rows
     ]
@@ -119,7 +119,7 @@ def run() -> list[Check]:
     for jump in JUMPS:
         clock.start()
         jumping = replace(scene(law, 0.0), wear=Wear(max_jump=jump))
-        error = abs(heat(run_scene(jumping, figures=False).recorder.rows) / exact - 1)
+        error = abs(heat(run_scene(jumping, figures=False).records.rows) / exact - 1)
         if not math.isnan(last):
             add(
                 f"order of the heat's error, jumps of {2 * jump} to {jump} cycles [-]",

@@ -77,9 +77,9 @@ def run() -> list[Check]:
     left: list[float] = []
 
     def look(state: State) -> None:
-        left.extend(area(report.cells) for report in state.reports)
+        left.extend(area(report.cells) for report in state.reports if report.cells is not None)
 
-    rows = run_scene(torn_scene(), on_step=look).recorder.rows
+    rows = run_scene(torn_scene(), on_step=look).records.rows
     table = np.array([[row[f"area lost by {cause} [mm^2]"] for cause in BOOKED] for row in rows])
     solves = np.array([[row[f"area lost by {cause} in this solve [mm^2]"] for cause in BOOKED] for row in rows])
     lost = left[0] - np.array(left)

@@ -26,6 +26,7 @@ from scipy.optimize import brentq
 
 from ngwear.errors import GeometryError
 from ngwear.geometry.cells import Cells, Fate
+from ngwear.geometry.element_body import elements
 from ngwear.geometry.outline import Array
 from ngwear.laws.damage import MaximumPrincipalStress, TensileNormalStress
 from ngwear.loop.lost_elements import exhaustion, tear
@@ -109,7 +110,7 @@ def comb() -> Cells:
 
 def bars_of(state: State) -> list[int]:
     """Bars that are left."""
-    return [b for b in range(len(LENGTHS)) if state.stage.body.cells.living[b]]
+    return [b for b in range(len(LENGTHS)) if elements(state.stage.body).cells.living[b]]
 
 
 def pull_by_force(state: State, wanted: float) -> float:
@@ -166,9 +167,9 @@ def crack() -> Iterator[tuple[list[int], float]]:
     state = held(cells, RUBBER, supports, MaximumPrincipalStress(critical=CRITICAL))
     for step in range(1, 200):
         pull(state, "top", 0.005 * step)
-        before = state.stage.body.cells
+        before = elements(state.stage.body).cells
         while tear(state, state.contour, 1):
-            after = state.stage.body.cells
+            after = elements(state.stage.body).cells
             torn = np.flatnonzero(before.living & (after.fate == Fate.TORN))
             loose = int((after.fate == Fate.LOOSE).sum())
             pull(state, "top", 0.005 * step)
@@ -188,8 +189,8 @@ def run() -> list[Check]:
         clock.start()
         hand = by_hand(force_controlled=controlled)
         found, balance, stress, forces = pulled_comb(force_controlled=controlled)
-        found += [(math.nan, math.nan, math.nan)] * (len(hand) - len(found))  # type: ignore[list-item]
-        for number, (mine, theirs) in enumerate(zip(hand, found, strict=True), start=1):
+        filled = [*found, *[(math.nan, math.nan, math.nan)] * (len(hand) - len(found))]
+        for number, (mine, theirs) in enumerate(zip(hand, filled, strict=True), start=1):
             for what, reference, value in zip(("step", "solve in it", "bar"), mine, theirs, strict=True):
                 add(f"loss {number} under {how}: {what} [-]", value, reference, 0.0)
         add(f"forces at both ends, worst imbalance under {how} [-]", balance, 0.0, 1e-8)

@@ -47,7 +47,7 @@ from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import Bound, Check, Stopwatch
 
 Array = NDArray[np.float64]
 MATERIAL = NeoHooke(shear=1.0, bulk_modulus=1e4)
@@ -88,7 +88,7 @@ def stick_width(state: State) -> float:
     """Half of the width that sticks in either stroke [mm]: its mesh edges' ends."""
     ends = state.stage.contacts["shaft"].end_places()[:, :, 0]
     edges = state.reports[-1].contacts["shaft"].edges
-    slips = [phase.shares["shaft"] for phase in state.phases]
+    slips = [phase.shares["shaft"] for phase in state.phases if phase.shares is not None]
     stuck = np.any([(share[edges].max(axis=1) < 1e-3 * share.max()) for share in slips], axis=0)
     inside = stuck & (np.abs(ends).max(axis=1) < HALF_WIDTH)
     return 0.5 * float(ends[inside].max() - ends[inside].min())
@@ -164,7 +164,7 @@ def on_the_way(patch: float) -> list[Check]:
 def _checker(patch: float, seconds: float) -> Callable[..., Check]:
     """Checks of a mesh, which their names tell."""
 
-    def check(quantity: str, value: float, reference: float, tolerance: float, bound: str = "near") -> Check:
+    def check(quantity: str, value: float, reference: float, tolerance: float, bound: Bound = "near") -> Check:
         return Check(CASE, f"{quantity}, elements of {patch} mm", value, reference, tolerance, seconds, bound=bound)
 
     return check

@@ -23,7 +23,7 @@ from ngwear.plots.pin import read_pin
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.read_scene import read_scene
 from ngwear.sliding.run_pin import run_pin
-from ngwear.verify.base import Check
+from ngwear.verify.base import Bound, Check
 
 CASE = "pin_on_plate"
 
@@ -33,7 +33,10 @@ def shipped_scene() -> PinScene:
     path = Path(__file__).parents[2] / "geometries" / "pin_on_plate" / "scene.toml"
     if not path.is_file():
         raise SceneError("verify", str(path), "the shipped scenes come with the repository: run this in a checkout")
-    return read_scene(path)
+    scene = read_scene(path)
+    if not isinstance(scene, PinScene):
+        raise SceneError("verify", str(path), "must be a scene of a pin on a plate")
+    return scene
 
 
 def run() -> list[Check]:
@@ -45,7 +48,7 @@ def run() -> list[Check]:
     friction, errors = series["friction coefficient [-]"], summary["error estimates"]
     cpu = summary["CPU time [s]"]
 
-    def check(quantity: str, value: float, reference: float, bound: str = "below", tolerance: float = 0.0) -> Check:
+    def check(quantity: str, value: float, reference: float, bound: Bound = "below", tolerance: float = 0.0) -> Check:
         return Check(CASE, quantity, float(value), reference, tolerance, cpu, bound=bound)
 
     rise = np.diff(friction) / friction[1:]

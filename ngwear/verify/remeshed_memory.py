@@ -55,7 +55,8 @@ def depth(time: float) -> float:
 def section(rng: np.random.Generator | None = None) -> Body:
     """The block, fine where the cylinder touches it; with a generator, meshed at random."""
     x = np.linspace(0.0, 1.0, SEEDS)
-    size, coarse = PATCH, COARSE
+    size: Array | float = PATCH
+    coarse = COARSE
     if rng is not None:
         x = np.sort(rng.uniform(0.0, 1.0, SEEDS))
         size, coarse = PATCH * rng.uniform(0.85, 1.1, SEEDS), COARSE * rng.uniform(0.8, 1.1)

@@ -24,12 +24,12 @@ from ngwear.errors import SceneError
 from ngwear.geometry.outline import Outline
 from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
-from ngwear.loop.state import StrokeReport
+from ngwear.loop.state import State, StrokeReport
 from ngwear.results.result_file import Snapshot
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Scene
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import Bound, Check, Stopwatch
 
 CASE = "rod_seal"
 
@@ -40,15 +40,16 @@ def shipped_scene(name: str = "scene.toml", folder: str = "rod_seal") -> Scene:
     if not path.is_file():
         raise SceneError("verify", str(path), "the shipped scenes come with the repository: run this in a checkout")
     scene = read_scene(path)
-    asks = isinstance(scene, Scene) and scene.accuracy.error is not None
-    return replace(scene, accuracy=Accuracy()) if asks else scene
+    if not isinstance(scene, Scene):
+        raise SceneError("verify", str(path), "must be a scene of a part that wears")
+    return scene if scene.accuracy.error is None else replace(scene, accuracy=Accuracy())
 
 
 def run_and_watch(scene: Scene) -> tuple[Result, list[StrokeReport]]:
     """Run a scene and keep the first reports of each stroke of the cycle."""
     first: list[StrokeReport] = []
 
-    def keep(state: object) -> None:
+    def keep(state: State) -> None:
         if not first:
             first.extend(state.reports)
 
@@ -114,7 +115,7 @@ def run_case() -> tuple[list[Check], Result]:
     summary = result.summary
     errors = summary["error estimates"]
     fall = summary["last outward rod peak pressure [MPa]"] / summary["first outward rod peak pressure [MPa]"]
-    rows = result.recorder.rows
+    rows = result.records.rows
     (rod,) = (c for c in scene.contacts if c.wears)
     work = sum(
         row["strokes in one solve [-]"] * stroke.travel * abs(row["rod force y [N]"])
@@ -123,12 +124,12 @@ def run_case() -> tuple[list[Check], Result]:
         if row["kind [-]"] == stroke.name
     )
     kept = (0, *scene.save.strokes, scene.program.strokes)
-    outwards = [s for s in result.recorder.snapshots if s.kind == "outward"]
+    outwards = [s for s in result.records.snapshots if s.kind == "outward"]
     outwards = [next(s for s in reversed(outwards) if s.stroke == stroke) for stroke in kept]
     beside = beside_the_peak(outwards)
-    balance = max(imbalance(r.forces) for r in (*first, *result.state.reports))
+    balance = max(imbalance(r.forces) for r in (*first, *result.end.reports))
 
-    def check(quantity: str, value: float, reference: float, tolerance: float = 0.0, bound: str = "near") -> Check:
+    def check(quantity: str, value: float, reference: float, tolerance: float = 0.0, bound: Bound = "near") -> Check:
         return Check(CASE, quantity, value, reference, tolerance, seconds, bound=bound)
 
     return [
@@ -146,7 +147,7 @@ def run_case() -> tuple[list[Check], Result]:
         check("lip depth after 200 strokes, upper bound [mm]", summary["lip depth [mm]"], 0.035, bound="below"),
         check(
             "lip depth over the patch's element edge [-]",
-            summary["lip depth [mm]"] / scene.accuracy.patch,
+            summary["lip depth [mm]"] / scene.accuracy.lengths.patch,
             3.0,
             bound="above",
         ),
@@ -158,7 +159,7 @@ def run_case() -> tuple[list[Check], Result]:
                 1.2,
                 bound="below",
             )
-            for s in result.recorder.snapshots[-2:]
+            for s in result.records.snapshots[-2:]
         ),
         check("pressure left of the lip, highest kept over first [-]", max(beside) / beside[0], 1.05, bound="above"),
         check("pressure left of the lip, last over highest kept [-]", beside[-1] / max(beside), 1.0, bound="below"),

@@ -14,7 +14,7 @@ from __future__ import annotations
 from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.results.recorder import depths
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import Bound, Check, Stopwatch
 from ngwear.verify.rod_seal import imbalance, run_and_watch, shipped_scene
 
 CASE = "rod_seal_filled"
@@ -23,8 +23,8 @@ LEFTMOST = 1.02  # mm: between the first two ridges
 
 def _leftmost(result: Result) -> float:
     """Depth of the ridge farthest to the left [mm]."""
-    before = result.recorder.scene.part.outline
-    return float(depths(before, result.state.contour)[before.points[:, 0] < LEFTMOST].max())
+    before = result.records.scene.part.outline
+    return float(depths(before, result.end.contour)[before.points[:, 0] < LEFTMOST].max())
 
 
 def run() -> list[Check]:
@@ -37,10 +37,10 @@ def run() -> list[Check]:
     seconds = watch.seconds
     ridge = _leftmost(result) / _leftmost(other)
     errors = found["error estimates"]
-    balance = max(imbalance(r.forces) for r in (*first, *result.state.reports))
+    balance = max(imbalance(r.forces) for r in (*first, *result.end.reports))
     peak = "last outward rod peak pressure [MPa]"
 
-    def check(quantity: str, value: float, reference: float, tolerance: float = 0.0, bound: str = "near") -> Check:
+    def check(quantity: str, value: float, reference: float, tolerance: float = 0.0, bound: Bound = "near") -> Check:
         return Check(CASE, quantity, value, reference, tolerance, seconds, bound=bound)
 
     return [
@@ -58,5 +58,5 @@ def run() -> list[Check]:
         check("area removed against the law [-]", errors["area against the law [-]"], 0.0, 1e-3),
         check("area changed by a remesh [-]", errors["area in a remesh [-]"], 0.0, 1e-6),
         check("sum of all forces over the largest [-]", balance, 0.0, 1e-6),
-        check("strokes in which the seal leaks [-]", sum(r["leaks [-]"] for r in result.recorder.rows), 0),
+        check("strokes in which the seal leaks [-]", sum(r["leaks [-]"] for r in result.records.rows), 0),
     ]

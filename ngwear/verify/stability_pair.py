@@ -27,7 +27,7 @@ from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import Bound, Check, Stopwatch
 from ngwear.verify.wear_runs import steps
 from ngwear.wear.archard import critical_distance
 
@@ -64,7 +64,9 @@ def roughness(profile: ContactProfile) -> float:
 def run() -> list[Check]:
     """Both schemes: roughness of the pressure and worn area."""
     checks = []
-    for scheme, times, limit, bound in (("explicit", 4.0, 2.0, "above"), ("implicit", 10.0, 1.05, "below")):
+    cases: tuple[tuple[str, float, float, Bound], ...]
+    cases = ("explicit", 4.0, 2.0, "above"), ("implicit", 10.0, 1.05, "below")
+    for scheme, times, limit, bound in cases:
         clock = Stopwatch()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", RuntimeWarning)  # the scheme says itself that it is unstable
@@ -80,7 +82,7 @@ def run() -> list[Check]:
                 limit,
                 math.nan,
                 seconds,
-                bound=bound,  # type: ignore[arg-type]
+                bound=bound,
             ),
             Check(
                 "stability_pair", f"worn area over k F s, {scheme} [-]", state.ledger.removed / law, 1.0, 1e-6, seconds

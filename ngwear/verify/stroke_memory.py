@@ -35,6 +35,7 @@ from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.background_mesh import Background
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
+from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Outline
 from ngwear.loop.memory_over_cycles import CycleMemory
 from ngwear.loop.run import run as run_scene
@@ -49,7 +50,7 @@ from ngwear.scene.part import Part
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import Cylinder
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import BAND, Check, Stopwatch
 from ngwear.verify.builders import meshed
 
 Array = NDArray[np.float64]
@@ -72,7 +73,7 @@ def block() -> Body:
 class Rig:
     """The block with a memory of either kind."""
 
-    def __init__(self, body: Body, memory: Memory) -> None:
+    def __init__(self, body: MeshedSection, memory: Memory) -> None:
         cylinder = Cylinder(centre=(0.0, HEIGHT + RADIUS), radius=RADIUS)
         self.contact = OutlineContact("roller", ("top",), cylinder, modulus=RUBBER.shear_modulus)
         side = FluidPressure(("right",), ("right",), (self.contact,))
@@ -91,7 +92,7 @@ class Rig:
         return np.array([abs(self.contact.force()[1]), self.contact.profile().pressure.max()])
 
 
-def resolved(body: Body, strokes: int) -> Array:
+def resolved(body: MeshedSection, strokes: int) -> Array:
     """Means over each stroke, shape (strokes, 2)."""
     rig = Rig(body, Viscosity(RUBBER, ARMS))
     times = DURATION * np.concatenate([[0.0], np.geomspace(2e-3, 1.0, SUBSTEPS)])
@@ -179,8 +180,8 @@ def time_step() -> list[Check]:
     watch, checks, off = Stopwatch(), [], {}
     for parts in (1, 4):
         result = run_scene(scene(parts), figures=False)
-        exact = resolved(result.state.stage.body, STROKES + 2)[-2:, 0]
-        forces = [abs(report.forces["roller"][1]) for report in ahead(result.state).reports]
+        exact = resolved(result.end.stage.body, STROKES + 2)[-2:, 0]
+        forces = [abs(report.forces["roller"][1]) for report in ahead(result.end).reports]
         force = np.mean(np.reshape(forces, (2, parts)), axis=1)
         off[parts] = float(np.linalg.norm(force - exact) / np.linalg.norm(exact))
         said = result.summary["error estimates"][
@@ -189,7 +190,7 @@ def time_step() -> list[Check]:
         words = (
             f"{parts} part{'' if parts == 1 else 's'} a stroke: stated over true error of the force by its time step"
         )
-        for limit, bound in ((0.5, "above"), (3.0, "below")):
+        for limit, bound in BAND:
             label = f"{words}, {bound} {limit:g} [-]"
             checks.append(Check(CASE, label, said / off[parts], limit, 0.0, watch.seconds, bound=bound))
     label = "error by the time step, 4 parts a stroke over 1 [-]"

@@ -33,7 +33,7 @@ from ngwear.equilibrium.problem import Problem
 from ngwear.fields.kinematics import Axisymmetric, Kinematics, PlaneStrain, Solid
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sheet import Sheet
-from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear, WearLaw
+from ngwear.laws import ByPressure, FrictionalEnergyWear, FrictionLaw, PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
 from ngwear.surfaces import Cylinder, Plane, RigidSurface, Sphere
 from ngwear.verify.base import Check, Stopwatch
@@ -47,7 +47,10 @@ MATERIALS = {
     "Mooney-Rivlin": MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0),
 }
 ARMS = PronySeries((3.0, 2.0), (0.1, 1.0))
-FRICTION = {"": 0.8, " by pressure": ByPressure(light=0.9, limit=0.1, pressure=0.8, exponent=0.7)}
+FRICTION: dict[str, FrictionLaw | float] = {
+    "": 0.8,
+    " by pressure": ByPressure(light=0.9, limit=0.1, pressure=0.8, exponent=0.7),
+}
 WEAR_LAWS = {
     "power 2": PowerWear(exponent=2.0),
     "power 0.5": PowerWear(exponent=0.5),
@@ -121,10 +124,13 @@ class _HeldWear(PressureWear):
 
 
 def _contact(
-    surface: RigidSurface, forced: bool, wear: float, law: WearLaw | None = None, **order: int
+    surface: RigidSurface, forced: bool, wear: float, law: WearLaw | None = None, order: int = 2
 ) -> UnilateralContact:
-    kind = PatchContact if isinstance(surface, Sphere) else OutlineContact
-    contact = kind("rigid", ("top",), surface, force_controlled=forced, modulus=1.5, **order)
+    contact: UnilateralContact
+    if isinstance(surface, Sphere):
+        contact = PatchContact("rigid", ("top",), surface, force_controlled=forced, modulus=1.5)
+    else:
+        contact = OutlineContact("rigid", ("top",), surface, force_controlled=forced, modulus=1.5, order=order)
     if law is not None:
         contact.pressure_wear = _HeldWear(law, modulus=1.5, coefficient=Coefficient("rigid", FRICTION[" by pressure"]))
     contact.load.Set(2.0 if forced else 0.05)
@@ -141,9 +147,9 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
         for forced, wear in itertools.product((False, True), (0.0, 0.02)):
             how = f"{'force' if forced else 'displacement'}{' and wear' if wear else ''}"
             yield f"contact, {name}, {how}, {kin}", kinematics, [_contact(surface, forced, wear)]
-        for law, wear_law in WEAR_LAWS.items():
+        for wears, wear_law in WEAR_LAWS.items():
             contact = _contact(surface, True, 0.02, wear_law)
-            yield f"contact, {name}, force and wear, {law}, {kin}", kinematics, [contact]
+            yield f"contact, {name}, force and wear, {wears}, {kin}", kinematics, [contact]
         for forced in (False, True):
             how = "force" if forced else "displacement"
             for by, law in FRICTION.items():

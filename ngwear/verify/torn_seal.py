@@ -22,7 +22,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -35,7 +34,7 @@ from ngwear.results.recorder import BOOK
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import Bound, Check, Stopwatch
 from ngwear.verify.error_estimates import effectivities, stated_of
 from ngwear.verify.rod_seal import shipped_scene
 
@@ -46,13 +45,14 @@ SHIPPED = "as shipped"
 
 def finer(scene: Scene) -> Scene:
     """The scene with elements of half the side."""
-    accuracy = replace(scene.accuracy, patch=scene.accuracy.patch / 2)
-    return replace(scene, accuracy=accuracy, deactivation=replace(scene.deactivation, depth=FINER_DEPTH))
+    accuracy = replace(scene.accuracy, patch=scene.accuracy.lengths.patch / 2)
+    deactivation = scene.deactivation and replace(scene.deactivation, depth=FINER_DEPTH)
+    return replace(scene, accuracy=accuracy, deactivation=deactivation)
 
 
 def careful(scene: Scene) -> Scene:
     """The scene with jumps that may err by half as much."""
-    return replace(scene, accuracy=replace(scene.accuracy, wear_error=scene.accuracy.wear_error / 2))
+    return replace(scene, accuracy=replace(scene.accuracy, wear_error=scene.accuracy.tolerances.wear_error / 2))
 
 
 def evaluated(scene: Scene, evaluations: int) -> Scene:
@@ -93,7 +93,7 @@ def run(folder: Path | None = None) -> Iterator[Check]:
         torn = _torn(results[name])
         yield _check(f"torn share of the area lost, {name} [-]", torn, 0.0, seconds, "above")
     watch, mine = Stopwatch(), results[TWO]
-    true = relative_errors(*(reading(result.recorder.rows) for result in (mine, results["elements of half the side"])))
+    true = relative_errors(*(reading(result.records.rows) for result in (mine, results["elements of half the side"])))
     said = stated_of(mine, _scene(TWO))
     yield from effectivities(CASE, scene.name, said, true, watch.seconds)
 
@@ -111,7 +111,7 @@ def _hour(folder: Path | None, name: str) -> Result:
 
 
 def _found(outcome: Outcome) -> Result:
-    if not outcome.ok:
+    if outcome.failure is not None:
         raise NgwearError(f"{CASE}, {outcome.point}: {outcome.failure.traceback}")
     return outcome.result
 
@@ -123,7 +123,7 @@ def _seconds(result: Result) -> float:
 def whole(scene: Scene, result: Result) -> list[Check]:
     """Sixty minutes as shipped."""
     summary, seconds = result.summary, _seconds(result)
-    side = scene.accuracy.patch
+    side = scene.accuracy.lengths.patch
     lost = summary["area lost in all [mm^2]"]
     booked = sum(summary[f"area lost by {cause} [mm^2]"] for cause in BOOK.values()) + summary["worn area [mm^2]"]
     ranked = [summary[f"{edge} depth [mm]"] for edge in ("lip", "left ridges", "heel")]
@@ -137,7 +137,7 @@ def whole(scene: Scene, result: Result) -> list[Check]:
     ]
 
 
-def _check(quantity: str, value: float, reference: float, seconds: float, bound: Any) -> Check:
+def _check(quantity: str, value: float, reference: float, seconds: float, bound: Bound) -> Check:
     return Check(CASE, quantity, value, reference, 0.0, seconds, bound=bound)
 
 

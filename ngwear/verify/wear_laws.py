@@ -26,14 +26,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear
-from ngwear.scene.contact import Contact
+from ngwear.laws import ByPressure, FrictionalEnergyWear, PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.scene.scene import Scene
 from ngwear.verify import stability_pair, worn_cylinder
-from ngwear.verify.base import Check, Stopwatch
+from ngwear.verify.base import Bound, Check, Stopwatch
 from ngwear.verify.wear_runs import CONTACT, depth_at, middle_pressure, steps
 from ngwear.verify.worn_column import FIRST, LAWS, WEAR_RATE, by_backward_euler, depth, euler_step, pressures, scene
 
@@ -50,9 +50,9 @@ RIPPLED = {
 
 
 def _check(
-    quantity: str, value: float, reference: float, tolerance: float, seconds: float, bound: str = "near"
+    quantity: str, value: float, reference: float, tolerance: float, seconds: float, bound: Bound = "near"
 ) -> Check:
-    return Check("wear_laws", quantity, value, reference, tolerance, seconds, bound=bound)  # type: ignore[arg-type]
+    return Check("wear_laws", quantity, value, reference, tolerance, seconds, bound=bound)
 
 
 def _order(errors: list[float]) -> float:
@@ -85,7 +85,7 @@ def equal_laws() -> list[Check]:
     thirion = ByPressure(light=MU, pressure=FIRST)
     power, saturating = PowerWear(exponent=1.0, reference_pressure=FIRST), SaturatingWear(pressure=FIRST)
     energy, less = FrictionalEnergyWear(), MU * WEAR_RATE
-    pairs = {
+    pairs: dict[str, tuple[tuple[WearLaw, dict[str, Any]], tuple[WearLaw | None, dict[str, Any]]]] = {
         "power 1 over Archard": ((power, {}), (None, {})),
         "energy over Archard with k mu": ((energy, {"friction": MU}), (None, {"friction": MU} | _rate(less))),
         "energy by Thirion's mu over saturating": (
@@ -101,14 +101,13 @@ def equal_laws() -> list[Check]:
     return checks
 
 
-def _rate(rate: float) -> dict[str, object]:
+def _rate(rate: float) -> dict[str, Any]:
     return {"specific_wear_rate": rate}
 
 
-def _with(run: Scene, **contact: object) -> Scene:
-    """The scene with other values of its contact."""
-    spec: Contact = replace(run.contacts[0], **contact)  # type: ignore[arg-type]
-    return replace(run, contacts=(spec,))
+def _with(run: Scene, wear_law: WearLaw) -> Scene:
+    """The scene with another law of its contact."""
+    return replace(run, contacts=(replace(run.contacts[0], wear_law=wear_law),))
 
 
 def ripples() -> list[Check]:
@@ -138,7 +137,7 @@ def cylinder() -> list[Check]:
         *_, state = steps(replace(run, wear=replace(run.wear, remesh=remesh)))
         deep = depth_at(state.contour, "top", block.size, 0.0)
         middle = middle_pressure(state.reports[-1].contacts[CONTACT], 0.8 * a)
-        removed = (run.contour.area - state.contour.area) / state.ledger.worn
+        removed = (run.part.outline.area - state.contour.area) / state.ledger.worn
         how, seconds = f"cylinder, remesh '{remesh}'", clock.seconds
         checks += [
             _check(f"depth, {how} [mm]", deep, a**2 / (2 * radius), OFF, seconds),

@@ -108,7 +108,7 @@ def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
     state = stepper.start()
     while not stepper.finished(state):
         (phase,) = state.phases
-        before = phase.ways[0] if phase.error <= CALM else 0.0
+        before = phase.worn.ways[0] if phase.worn is not None and phase.error <= CALM else 0.0
         state = stepper.advance(state)
         report = state.reports[0]
         profile = report.contacts[spec.name]
@@ -117,7 +117,7 @@ def steps(scene: Scene, book: Book | None = None) -> Iterator[State]:
         share = report.repeats / state.strokes
         last = share_of_last(distance, before)
         book.mean = last * book.mean + (1 - last) * pressure_over_volume_ratio(scene, profile)
-        book.worn += spec.specific_wear_rate * distance * book.mean
+        book.worn += spec.wear_rate.highest * distance * book.mean
         book.load += share * (load - book.load)
         yield state
 

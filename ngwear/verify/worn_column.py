@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,9 +47,9 @@ LAWS: dict[str, tuple[WearLaw, Callable[[float], float]]] = {
 }
 
 
-def scene(law: WearLaw | None, way: float, count: int, *, scheme: str = "implicit", **contact: object) -> Scene:
+def scene(law: WearLaw | None, way: float, count: int, *, scheme: str = "implicit", **contact: Any) -> Scene:
     """The column over a way [``UNIT``] in some strokes, each of them solved; ``contact`` as of ``Contact``."""
-    spec = {"specific_wear_rate": WEAR_RATE, "wear_law": law} | contact
+    spec: dict[str, Any] = {"specific_wear_rate": WEAR_RATE, "wear_law": law} | contact
     return Scene(
         name="column",
         part=Part(CONTOUR, material=RUBBER),

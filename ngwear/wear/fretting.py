@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.effects.friction import FullSliding
+from ngwear.effects.friction import Friction
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
 from ngwear.errors import SceneError
@@ -126,7 +126,8 @@ class Fretting:
         In equilibrium at rest under its load.
     contact : OutlineContact
         That slides and has a worn profile.
-    friction : FullSliding
+    friction : Friction
+        That slides in full.
     elasticity : Elasticity
     motion : Motion
     control : JumpControl
@@ -145,7 +146,7 @@ class Fretting:
 
     problem: Problem
     contact: OutlineContact
-    friction: FullSliding
+    friction: Friction
     elasticity: Elasticity
     motion: Motion
     control: JumpControl

@@ -18,13 +18,15 @@ ASKED = 2e-3
 
 
 def to(error):
-    return replace(scene("implicit"), deactivation=None, wear=Wear(), accuracy=Accuracy(error=error))
+    block = scene("implicit")
+    few = replace(block.program, strokes=4)
+    return replace(block, deactivation=None, wear=Wear(), accuracy=Accuracy(error=error), program=few)
 
 
 @pytest.fixture
 def coarse_first(monkeypatch):
     """Begin so coarse that the first level cannot do."""
-    monkeypatch.setattr(adaptive, "first_across", lambda error: 2.0)
+    monkeypatch.setattr(adaptive, "first_across", lambda error, peak_error=None: 2.0)
 
 
 @pytest.mark.parametrize(
@@ -104,7 +106,7 @@ def test_interrupted_it_goes_on_where_it_was(tmp_path, coarse_first, monkeypatch
 
 def test_a_finest_level_that_is_not_enough_warns(tmp_path, monkeypatch):
     monkeypatch.setattr(adaptive, "MOST_ACROSS", 3.0)
-    monkeypatch.setattr(adaptive, "first_across", lambda error: 3.0)
+    monkeypatch.setattr(adaptive, "first_across", lambda error, peak_error=None: 3.0)
     summary = run_to_error(to(0.001), out=tmp_path).summary
     assert summary["levels"][-1][DEPTH] > 0.001
     assert "0.001 was asked for" in summary["warnings"][-1]
@@ -123,16 +125,16 @@ def test_a_level_keeps_what_is_not_about_the_error():
 
 @pytest.mark.parametrize(
     ("asked", "told"),
-    [("rough", "--accuracy = 'rough': must be one of"), ("1e-7", "is less than an estimate"), ("2", "must be below 1")],
+    [("rough", "accuracy = 'rough': must be one of"), ("1e-7", "is less than an estimate"), ("2", "must be below 1")],
 )
 def test_the_command_line_refuses(asked, told, sheet_file, tmp_path, capsys):
     assert main(["run", str(sheet_file), "--out", str(tmp_path / "out"), "--accuracy", asked]) == 2
     assert told in capsys.readouterr().err
 
 
-def test_the_command_line_takes_a_preset_and_an_error(sheet_file, tmp_path):
-    sheet = str(sheet_file)
-    for asked in ("draft", "0.05"):
+def test_the_command_line_takes_a_preset_and_an_error(write_sheet, tmp_path):
+    sheet = str(write_sheet(tmp_path, ("strokes = 4", "strokes = 2")))
+    for asked, more in (("draft", ["--alone"]), ("0.05", [])):
         out = tmp_path / asked
-        assert main(["run", sheet, "--out", str(out), "--accuracy", asked, "--quiet"]) == 0
+        assert main(["run", sheet, "--out", str(out), "--accuracy", asked, "--quiet", *more]) == 0
         assert ("levels" in json.loads((out / "summary.json").read_text())) == (asked == "0.05")

@@ -15,6 +15,7 @@ from ngwear.explanation.contact_pressures import press
 from ngwear.explanation.explain import explain
 from ngwear.explanation.neglected_effects_pin import left_out as left_out_of_pin
 from ngwear.explanation.text import lines
+from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.read_scene import read_scene
 
 GEOMETRIES = Path(__file__).parents[3] / "geometries"
@@ -48,7 +49,7 @@ def test_every_absent_effect_has_numbers_and_a_verdict(told):
         numbers = [value for key, value in verdict.items() if key not in ("verdict", "matters")]
         assert all(math.isfinite(value) for value in numbers), name
         assert numbers or name == "stick-slip"
-    assert json.loads(json.dumps(found, allow_nan=False)) == found
+    assert json.loads(json.dumps(dict(found), allow_nan=False)) == found
 
 
 def test_unknowns_and_entries_are_the_problems_own(told, sheet):
@@ -143,7 +144,7 @@ def test_a_part_that_cannot_be_mounted_is_still_explained(told):
 
 
 def test_shipped_seals_text(seal):
-    found = explain(replace(seal, accuracy=replace(seal.accuracy, mounting=0.06)))
+    found = explain(replace(seal, accuracy=Accuracy(mounting=0.06)))
     text = "\n".join(lines(found))
     assert "left out: viscosity, stick-slip, heat" in text
     assert "heat cannot be told from the scene: the strokes have no speed" in text

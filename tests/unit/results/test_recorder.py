@@ -107,6 +107,7 @@ def test_result_file_holds_the_run(finished, sheet):
     assert result.kinds == ["stroke"]
     assert result.series["maximum depth [mm]"][-1] == summary["maximum depth [mm]"]
     assert result.snapshots[0].section["triangles"].shape[1] == 6
+    assert [s.stroke for s in result.snapshots if s.section] == [0, 4]
     assert result.at(2.2, "stroke").stroke == 2
 
 
@@ -180,9 +181,9 @@ def test_missing_result_file_says_what_to_give(tmp_path):
 
 
 def test_picture_that_cannot_be_written(finished):
-    (finished / "mesh.png").unlink(missing_ok=True)
-    (finished / "mesh.png").mkdir()
-    with pytest.raises(ResultError, match=r"mesh\.png cannot be written"):
+    (finished / "section.png").unlink()
+    (finished / "section.png").mkdir()
+    with pytest.raises(ResultError, match=r"section\.png cannot be written"):
         plot(finished)
 
 
