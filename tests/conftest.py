@@ -1,6 +1,7 @@
 """Options, markers by folder, and a small scene that mounts and wears in a third of a second."""
 
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -102,6 +103,14 @@ def pytest_collection_modifyitems(config, items):
         slow = folder == "stability" or item.get_closest_marker("slow") is not None
         if slow and not config.getoption("--slow"):
             item.add_marker(pytest.mark.skip(reason="slow: give --slow"))
+
+
+@pytest.fixture(autouse=True)
+def _figures_as_they_fall(request, monkeypatch):
+    """Without ``--slow`` figures of a test are drawn, but not laid out; those of fixtures for several tests are."""
+    if request.config.getoption("--slow") or "matplotlib" not in sys.modules:
+        return
+    monkeypatch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda self, figure: None)
 
 
 def edited(text: str, changes) -> str:

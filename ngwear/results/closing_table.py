@@ -13,6 +13,8 @@ NOT_FOUND = {
     "unknowns",
     "element edge in the contact [mm]",
     "error asked for [-]",
+    "peak error asked for [-]",
+    "CPU time of all levels [s]",
     *TOOK,
 }
 

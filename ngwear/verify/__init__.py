@@ -6,74 +6,185 @@ imported when they are run; listing the cases loads no solver.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 from ngwear.errors import SceneError
-from ngwear.verify.base import Check
+from ngwear.verify.base import Check, Checks
 
-CASES: dict[str, str] = {
-    "tangents": "ngwear.verify.tangents",
-    "convergence": "ngwear.verify.convergence",
-    "locking": "ngwear.verify.locking",
-    "memory": "ngwear.verify.memory",
-    "remeshed_memory": "ngwear.verify.remeshed_memory",
-    "stroke_memory": "ngwear.verify.stroke_memory",
-    "hertz": "ngwear.verify.hertz",
-    "hunter": "ngwear.verify.hunter",
-    "hunter_transient": "ngwear.verify.hunter_transient",
-    "three_arms": "ngwear.verify.three_arms",
-    "p1a": "ngwear.verify.p1a",
-    "partial_slip": "ngwear.verify.partial_slip",
-    "partial_slip_wear": "ngwear.verify.partial_slip_wear",
-    "indentation": "ngwear.verify.indentation",
-    "pin_on_plate": "ngwear.verify.pin_on_plate",
-    "ring": "ngwear.verify.ring",
-    "leak_pressure": "ngwear.verify.leak_pressure",
-    "block_on_ring": "ngwear.verify.block_on_ring",
-    "worn_cylinder": "ngwear.verify.worn_cylinder",
-    "fretting": "ngwear.verify.fretting",
-    "measured_profile": "ngwear.verify.measured_profile",
-    "stability_pair": "ngwear.verify.stability_pair",
-    "wear_laws": "ngwear.verify.wear_laws",
-    "notched_strip": "ngwear.verify.notched_strip",
-    "lost_elements": "ngwear.verify.lost_elements",
-    "tearing_off": "ngwear.verify.no_loss",
-    "material_book": "ngwear.verify.material_book",
-    "torn_seal": "ngwear.verify.torn_seal",
-    "lubrication": "ngwear.verify.lubrication",
-    "sliding_roller": "ngwear.verify.sliding_roller",
-    "shaft_on_plate": "ngwear.verify.shaft_on_plate",
-    "rod_seal": "ngwear.verify.rod_seal",
-    "rod_seal_jumps": "ngwear.verify.rod_seal_jumps",
-    "error_estimates": "ngwear.verify.error_estimates",
-    "rod_seal_filled": "ngwear.verify.rod_seal_filled",
+
+@dataclass(frozen=True)
+class Case:
+    """A reference case, before its module is loaded.
+
+    Parameters
+    ----------
+    module : str
+        Whose ``run()`` makes the checks.
+    seconds : float
+        Processor time of ``ngwear verify CASE``, all processes, measured on one machine [s].
+    compares : str
+        What with what, in one line.
+    quick : bool
+        Whether it is one of those that run if no case is named.
+    """
+
+    module: str
+    seconds: float
+    compares: str
+    quick: bool = False
+
+
+CASES: dict[str, Case] = {
+    "tangents": Case("ngwear.verify.tangents", 0, "every term's tangent with finite differences of its residual"),
+    "convergence": Case(
+        "ngwear.verify.convergence", 0, "order of the displacement's error in L2 with theory, orders 1, 2 and 3"
+    ),
+    "locking": Case("ngwear.verify.locking", 0, "error at K/G = 1e5 with that at 1e2, on triangles and quadrilaterals"),
+    "memory": Case(
+        "ngwear.verify.memory", 0, "relaxation, creep and oscillation with 1, 3 and 15 arms with closed forms"
+    ),
+    "remeshed_memory": Case(
+        "ngwear.verify.remeshed_memory", 0, "memory carried through 100 unrelated meshes with a run on one mesh"
+    ),
+    "stroke_memory": Case(
+        "ngwear.verify.stroke_memory", 0, "one solve a stroke with strokes resolved in time, and with jumps"
+    ),
+    "hertz": Case("ngwear.verify.hertz", 0, "a line contact's half width, peak and pressure with Hertz's"),
+    "hunter": Case("ngwear.verify.hunter", 0, "friction of a cylinder on a viscoelastic half-plane with Hunter's"),
+    "hunter_transient": Case(
+        "ngwear.verify.hunter_transient", 0, "the same slid in time with Hunter's, and its cost with the direct solve's"
+    ),
+    "three_arms": Case(
+        "ngwear.verify.three_arms", 0, "the same with three arms with a boundary solution by Fourier's series"
+    ),
+    "p1a": Case(
+        "ngwear.verify.p1a", 0, "a sheet under a roller: force, half width and peak with those of four other programs"
+    ),
+    "partial_slip": Case(
+        "ngwear.verify.partial_slip", 0, "stick zone and traction of a cylinder pushed and pulled with Cattaneo-Mindlin"
+    ),
+    "partial_slip_wear": Case(
+        "ngwear.verify.partial_slip_wear", 0, "wear of a contact that sticks in its middle with closed forms"
+    ),
+    "indentation": Case(
+        "ngwear.verify.indentation", 0, "a ball 40 % deep in a sheet, 3D, with an independent solution on tetrahedra"
+    ),
+    "pin_on_plate": Case(
+        "ngwear.verify.pin_on_plate", 0, "the shipped pin on a plate at seven speeds with what its source describes"
+    ),
+    "ring": Case("ngwear.verify.ring", 0, "a thick-walled ring on a rod and under pressure with closed forms"),
+    "leak_pressure": Case(
+        "ngwear.verify.leak_pressure", 0, "what a squeezed block holds of a fluid with the squeeze's pressure"
+    ),
+    "block_on_ring": Case(
+        "ngwear.verify.block_on_ring", 0, "a block worn over 3600 m with an implicit half-plane solver"
+    ),
+    "worn_cylinder": Case(
+        "ngwear.verify.worn_cylinder", 0, "late wear under a cylinder with Archard's law's closed form"
+    ),
+    "fretting": Case(
+        "ngwear.verify.fretting", 0, "10,000 cycles of steel on steel, both wearing, with published depths"
+    ),
+    "measured_profile": Case(
+        "ngwear.verify.measured_profile", 0, "the wear rate fitted to a disturbed profile with the one it was made of"
+    ),
+    "stability_pair": Case(
+        "ngwear.verify.stability_pair",
+        0,
+        "implicit wear at 10 critical steps, smooth, with explicit wear at 4, rippled",
+    ),
+    "wear_laws": Case(
+        "ngwear.verify.wear_laws", 0, "columns and a cylinder worn by laws beyond Archard's with closed forms"
+    ),
+    "notched_strip": Case(
+        "ngwear.verify.notched_strip", 0, "bars that tear one by one, and a crack, with hand calculations"
+    ),
+    "lost_elements": Case(
+        "ngwear.verify.lost_elements", 0, "energy and residual without lost elements with the section meshed anew"
+    ),
+    "tearing_off": Case(
+        "ngwear.verify.no_loss", 0, "wear with elements that could be lost but are not with an explicit loop by hand"
+    ),
+    "material_book": Case(
+        "ngwear.verify.material_book", 0, "areas lost by each cause with the section's, and numbers of looks a cycle"
+    ),
+    "torn_seal": Case(
+        "ngwear.verify.torn_seal", 0, "an hour of the shipped section that loses elements with finer elements and jumps"
+    ),
+    "lubrication": Case(
+        "ngwear.verify.lubrication", 0, "friction heat and wear by tables over the distance with their integrals"
+    ),
+    "sliding_roller": Case(
+        "ngwear.verify.sliding_roller", 0, "a sliding roller to mu = 1 on coarser meshes with a fine one"
+    ),
+    "shaft_on_plate": Case(
+        "ngwear.verify.shaft_on_plate", 0, "the shipped shaft: worn area with a closed form, jumps with 200 steps"
+    ),
+    "rod_seal": Case("ngwear.verify.rod_seal", 0, "the shipped rod seal with what its source describes, and its books"),
+    "rod_seal_jumps": Case(
+        "ngwear.verify.rod_seal_jumps", 0, "the rod seal by cycle jumps with each of its 200 strokes solved"
+    ),
+    "error_estimates": Case(
+        "ngwear.verify.error_estimates", 0, "the errors that shipped scenes state with what finer runs show"
+    ),
+    "rod_seal_filled": Case(
+        "ngwear.verify.rod_seal_filled", 0, "the rod seal of a rubber that remembers with the elastic one"
+    ),
 }
 
+ALL = "all"
+QUICK = tuple(name for name, case in CASES.items() if case.quick)
 RESUMED = ("torn_seal",)  # with runs of a quarter of an hour and more
 
-__all__ = ["CASES", "Check", "checks_of", "chosen", "verify"]
+__all__ = ["ALL", "CASES", "QUICK", "Case", "Check", "Checks", "checks_of", "chosen", "listing", "verify"]
 
 
-def verify(names: Iterable[str] | None = None) -> list[Check]:
-    """Run the named cases, or all of them, and return their checks.
+def verify(*cases: str, out: Path | str | None = None) -> Checks:
+    """Compare with references that others derived.
+
+    Parameters
+    ----------
+    *cases : str
+        Their names, ``"all"`` for all; without any, those that together take about a minute.
+    out : path or None
+        Folder in which cases that take hours keep their runs, to go on with.
 
     Raises
     ------
     SceneError
         For a name that is no case.
     """
-    return [check for name in chosen(names) for check in checks_of(name)]
+    folder = None if out is None else Path(out)
+    return Checks(check for name in chosen(cases or None) for check in checks_of(name, folder))
 
 
 def chosen(names: Iterable[str] | None = None) -> list[str]:
-    """Return the named cases, or all of them; errors as ``verify``."""
-    out = list(CASES) if names is None else list(names)
-    for name in out:
-        if name not in CASES:
-            raise SceneError("verify", name, f"no such case; known: {', '.join(CASES)}")
-    return out
+    """Return the named cases, every case for ``all``, the quick ones without names; errors as ``verify``."""
+    asked = list(QUICK if names is None else names)
+    for name in asked:
+        if name != ALL and name not in CASES:
+            raise SceneError("verify", name, f"no such case; known: {ALL}, {', '.join(CASES)}")
+    return list(CASES) if ALL in asked else asked
+
+
+def listing() -> list[str]:
+    """Return a line for each case, the quick ones first: its name, the seconds that it takes, and what it compares."""
+    seconds = {True: 0.0, False: 0.0}
+    lines: dict[bool, list[str]] = {True: [], False: []}
+    for name, case in CASES.items():
+        seconds[case.quick] += case.seconds
+        lines[case.quick].append(f"  {name:18s}{case.seconds:7.0f} s  {case.compares}")
+    return [
+        f"without a name, {seconds[True]:.0f} s of processor time:",
+        *lines[True],
+        f"by name, or by 'all', {seconds[False] / 3600:.1f} h of processor time:",
+        *lines[False],
+    ]
 
 
 def checks_of(name: str, folder: Path | None = None) -> Iterator[Check]:
@@ -81,5 +192,15 @@ def checks_of(name: str, folder: Path | None = None) -> Iterator[Check]:
 
     Errors as ``run``, if the folder cannot be used.
     """
-    run = import_module(CASES[name]).run
+    run = import_module(CASES[name].module).run
     yield from run(folder / name) if folder is not None and name in RESUMED else run()
+
+
+class _Room(ModuleType):
+    """The package as a callable, for it shares its name with the verb ``ngwear.verify``."""
+
+    def __call__(self, *cases: str, out: Path | str | None = None) -> Checks:
+        return verify(*cases, out=out)
+
+
+sys.modules[__name__].__class__ = _Room

@@ -37,8 +37,8 @@ TURNS = 2  # of a level and the setting that it is compared with
 
 def fine_along_the_edges(edge):
     """Let meshes be fine along all worn edges, for the whole run."""
-    from ngwear import mounting, refinement, remesh
     from ngwear.geometry.sizing import SizeField, fitted
+    from ngwear.loop import mounting, refinement, remeshing
 
     def field(scene, across=None):
         contour, accuracy = scene.part.outline, scene.accuracy
@@ -52,7 +52,7 @@ def fine_along_the_edges(edge):
         return field(stage.scene)
 
     mounting.mounting_field = field
-    for module in (refinement, remesh):
+    for module in (refinement, remeshing):
         module.wanted_size = wanted
 
 

@@ -8,11 +8,13 @@ of a run, medians of the rounds, and that of the ratios of both runs' times in e
 
 Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
        python price_of_absence.py --subject never | removed EFFECT
+       python price_of_absence.py --facts never | removed EDGE
 """
 
 import hashlib
 import json
 import os
+import pickle
 import statistics
 import subprocess
 import sys
@@ -27,28 +29,29 @@ KINDS = ("never", "removed")
 ROUNDS, ASSEMBLIES = 12, 5
 
 # The modules that belong to each effect alone; wear is the loop itself.
-FRICTION = ("effects.friction", "effects.coefficient", "effects.ripples", "effects.stick_slip", "lasting_slip")
+FRICTION = ("effects.friction", "effects.coefficient", "effects.ripples", "effects.stick_slip", "loop.slip_over_cycles")
 MODULES = {
     "friction": FRICTION,
-    "stick-slip": ("effects.stick_slip", "lasting_slip"),
+    "stick-slip": ("effects.stick_slip", "loop.slip_over_cycles"),
     "fluid pressure": ("effects.fluid_pressure",),
     "memory": (
         "effects.memory",
         "effects.stroke_memory",
         "effects.viscosity",
-        "cycle_memory",
-        "time_step",
-        "fields.background",
+        "loop.memory_over_cycles",
+        "loop.time_step_error",
+        "fields.background_mesh",
     ),
     "wear": (),
     "law of wear": ("effects.pressure_wear",),
-    "wear of the surface": ("counter_wear",),
-    "lost elements": ("deactivation", "geometry.element_body", "geometry.layers"),
+    "wear of the surface": ("loop.counter_surface",),
+    "lost elements": ("loop.lost_elements", "geometry.element_body", "geometry.layers"),
 }
+QUICK = tuple(effect for effect in MODULES if effect != "stick-slip")  # whose scene takes longer than all the others
 
 
-def pair(effect):
-    """The scene with the effect, and without."""
+def pair(effect, edge=0.1):
+    """The scene with the effect, and without, on elements of so many mm."""
     from ngwear.geometry.outline import Outline
     from ngwear.laws import PowerWear
     from ngwear.materials import MooneyRivlin, PronySeries
@@ -73,7 +76,7 @@ def pair(effect):
         contacts=(roller,),
         supports=(Support(edges=("bottom",)),),
         program=Program(cycle=(forth, back), strokes=2),
-        accuracy=Accuracy(patch=0.1, coarse=0.5, mounting=0.1),
+        accuracy=Accuracy(patch=edge, coarse=5 * edge, mounting=edge),
         wear=Wear(step="each", remesh="never"),
         axisymmetric=False,
     )
@@ -164,6 +167,26 @@ def assembly(state):
     return statistics.median(seconds)
 
 
+def loaded(effect):
+    """Which of the effect's modules this process has loaded."""
+    return [name for name in MODULES[effect] if f"ngwear.{name}" in sys.modules]
+
+
+def all_facts(kind, edge):
+    """Facts of the quick effects' scenes without them, in one process: never had them, or had each and took it out."""
+    told, seen = {}, {}
+    for effect in QUICK:
+        present, scene = pair(effect, edge)
+        if kind == "removed":
+            told[effect] = {"present": facts(run(present)[1]), "absent": facts(run(without(effect, present, scene))[1])}
+            continue
+        same = pickle.dumps(scene)
+        if same not in seen:
+            seen[same] = facts(run(scene)[1])
+        told[effect] = {"absent": seen[same], "loaded": loaded(effect)}
+    print(json.dumps(told))  # noqa: T201
+
+
 def subject(kind, effect):
     """Answer every line, a core's number, with a run of the scene without the effect; the first answers tell facts."""
     present, scene = pair(effect)
@@ -175,8 +198,7 @@ def subject(kind, effect):
         scene = without(effect, present, scene)
     _, state = run(scene)
     told["absent"] = facts(state)
-    loaded = [name for name in MODULES[effect] if f"ngwear.{name}" in sys.modules]
-    told["loaded"] = loaded
+    told["loaded"] = loaded(effect)
     tell = sys.stdout
     print(json.dumps(told), file=tell, flush=True)
     for line in sys.stdin:
@@ -212,6 +234,16 @@ def compare(effect, rounds):
     return told, runs
 
 
+def compare_facts(edge):
+    """What two processes tell of the quick effects: that never had them, and that took them out."""
+    environment = {**os.environ, **ONE_THREAD}
+    told = {}
+    for kind in KINDS:
+        command = [sys.executable, str(Path(__file__).resolve()), "--facts", kind, str(edge)]
+        told[kind] = json.loads(subprocess.run(command, env=environment, check=True, capture_output=True).stdout)
+    return told
+
+
 def row(effect, told, runs):
     """A line of the table."""
     present, absent = told["removed"]["present"], told["never"]["absent"]
@@ -243,5 +275,7 @@ def main(arguments):
 if __name__ == "__main__":
     if sys.argv[1:2] == ["--subject"]:
         subject(*sys.argv[2:])
+    elif sys.argv[1:2] == ["--facts"]:
+        all_facts(sys.argv[2], float(sys.argv[3]))
     else:
         main(sys.argv[1:])

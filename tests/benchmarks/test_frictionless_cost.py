@@ -66,7 +66,7 @@ def report(facts, seconds, answers):
 
 
 def test_scene_without_friction_is_the_problem_without_friction(capsys):
-    facts, seconds, answers = compare(rounds=4)
+    facts, seconds, answers = compare(rounds=2)
     with capsys.disabled():
         print(f"\n{report(facts, seconds, answers)}")  # noqa: T201
     assert facts["scene"] == facts["hand"]

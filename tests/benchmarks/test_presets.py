@@ -8,6 +8,7 @@ from subjects import measure
 DEPTH = "maximum depth [mm]"
 
 
+@pytest.mark.slow
 def test_a_draft_and_fixed_settings_find_the_same_depth():
     draft = measure(presets.__file__, 6.0, "shaft_on_plate/scene")
     assert draft["cpu"] > 0

@@ -4,11 +4,28 @@ The ratio of CPU times is printed, not judged; ``python tests/benchmarks/price_o
 """
 
 import sys
+from importlib.util import find_spec
 
 import price_of_absence
 import pytest
 
 
+@pytest.fixture(scope="module")
+def told():
+    """Of scenes on coarse elements; which they are does not matter where all shall be equal to the last bit."""
+    return price_of_absence.compare_facts(0.3)
+
+
+@pytest.mark.parametrize("effect", price_of_absence.QUICK)
+def test_what_is_taken_out_leaves_nothing(effect, told):
+    never, removed = told["never"][effect], told["removed"][effect]
+    assert all(find_spec(f"ngwear.{module}") for module in price_of_absence.MODULES[effect]), "modules that there are"
+    assert never["loaded"] == [], "modules of an effect that the scene never had"
+    assert removed["absent"] == never["absent"], "unknowns, matrix entries, bytes, solver and result, to the last bit"
+    assert removed["present"]["result"] != never["absent"]["result"], "the effect does something"
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", price_of_absence.MODULES)
 def test_what_is_taken_out_costs_nothing(effect, capsys):
     told, runs = price_of_absence.compare(effect, rounds=1)

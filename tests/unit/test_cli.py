@@ -9,13 +9,14 @@ import pytest
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES, SUMMARY
 from ngwear.loop.stepper import Stepper
-from ngwear.verify import CASES, Check
+from ngwear.verify import CASES, Case, Check
 
 INTERRUPTED = 130
 
 
 def run(file, out, *more):
-    return main(["run", str(file), "--out", str(out), "--quiet", *more])
+    """Without the companion runs, which begin as another process even for a scene that is refused."""
+    return main(["run", str(file), "--out", str(out), "--quiet", "--alone", *more])
 
 
 def test_run_reaches_its_end(tmp_path, sheet_file, capsys):
@@ -27,8 +28,8 @@ def test_run_reaches_its_end(tmp_path, sheet_file, capsys):
     assert {p.name for p in (tmp_path / "out").iterdir()} >= {SERIES, FIELDS, SUMMARY, CHECKPOINT}
 
 
-def test_quiet_is_quiet(tmp_path, sheet_file, capfd):
-    assert run(sheet_file, tmp_path / "out") == OK
+def test_quiet_is_quiet(tmp_path, write_sheet, capfd):
+    assert run(write_sheet(tmp_path, ("strokes = 4", "strokes = 1")), tmp_path / "out") == OK
     shown = capfd.readouterr()
     assert (shown.out, shown.err) == ("", "")
 
@@ -54,7 +55,7 @@ def test_bad_scene_ends_with_2_and_one_line(tmp_path, write_sheet, capsys, old, 
 
 
 def test_missing_scene_file(tmp_path, capsys):
-    assert run(tmp_path / "nowhere.toml", tmp_path / "out") == BAD_INPUT
+    assert main(["run", str(tmp_path / "nowhere.toml"), "--out", str(tmp_path / "out")]) == BAD_INPUT
     assert "nowhere.toml" in capsys.readouterr().err
 
 
@@ -186,7 +187,7 @@ def test_verify_prints_each_check_once_it_is_made(capsys, monkeypatch):
             yield Check("moon", "mass [-]", value, 1.0, 0.1, 0.0)
             told.append(capsys.readouterr().out)
 
-    monkeypatch.setitem(CASES, "moon", "moon")
+    monkeypatch.setitem(CASES, "moon", Case("moon", 0.0, "its mass"))
     monkeypatch.setitem(sys.modules, "moon", SimpleNamespace(run=run))
     assert main(["verify", "moon", "--json"]) == GAVE_UP
     assert [check["value"] for check in json.loads("".join(told) + capsys.readouterr().out)] == [1.0, 1.5]

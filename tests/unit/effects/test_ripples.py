@@ -91,6 +91,7 @@ def test_sliding_that_would_not_stay_steady_is_said():
     assert f"(margin {slider.friction.margin():.2g})" in told
 
 
+@pytest.mark.slow
 def test_without_the_shift_the_roller_ends_below_mu_1(monkeypatch):
     monkeypatch.setattr("ngwear.effects.ripples.SHIFT", 0.0)
     slider = sliding_roller.Slider(0.1)

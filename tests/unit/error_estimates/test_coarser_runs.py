@@ -26,13 +26,27 @@ from ngwear.results.recorder import TORN, fingerprint
 from ngwear.results.result_file import read_result
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.options import Wear
-from ngwear.verify.no_loss import scene
+from ngwear.verify import no_loss
+
+
+def scene(scheme):
+    """The block of elements for four strokes on elements of twice the size."""
+    block = no_loss.scene(scheme)
+    accuracy = replace(block.accuracy, patch=0.2, mounting=0.2)
+    return replace(block, accuracy=accuracy, program=replace(block.program, strokes=4))
+
+
+def without_companions(scene, folder):
+    """Leave in the folder that both companions gave up, so that none is run."""
+    for name, factor in ((FILE, 2.0), (COARSEST, 4.0)):
+        told = {"scene": fingerprint(coarser(scene, factor)), "gave up": "no equilibrium"}
+        (folder / name).write_text(json.dumps(told))
 
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
-    return folder, run_stated(scene("implicit"), out=folder)
+    return folder, run_stated(scene("implicit"), out=folder, figures=False)
 
 
 def test_errors_by_hand():
@@ -57,7 +71,7 @@ def test_an_error_of_order_half_to_two_is_met_within_a_factor_of_three():
 
 
 def test_the_companion_is_coarser_in_every_setting():
-    fine = scene("implicit")
+    fine = no_loss.scene("implicit")
     coarse = coarser(fine).accuracy
     assert coarse.patch == 2 * fine.accuracy.patch
     assert coarse.coarse == 2 * fine.accuracy.coarse
@@ -167,7 +181,7 @@ def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
     coarsest = {"scene": fingerprint(coarser(scene("implicit"), 4.0)), "gave up": "no equilibrium"}
     for name, left in ((FILE, other), (COARSEST, coarsest)):
         (tmp_path / name).write_text(json.dumps(left))
-    summary = run_stated(scene("implicit"), out=tmp_path).summary
+    summary = run_stated(scene("implicit"), out=tmp_path, figures=False).summary
     assert summary["warnings"] == [
         "the coarsest companion run gave up: no equilibrium; the error of the mesh is taken as of first order"
     ]
@@ -208,7 +222,7 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
 def test_a_companion_that_has_ended_is_not_run_again(finished, monkeypatch):
     folder, result = finished
     monkeypatch.setattr(companion, "Worker", None)
-    again = run_stated(scene("implicit"), out=folder, resume=True)
+    again = run_stated(scene("implicit"), out=folder, resume=True, figures=False)
     assert again.summary["error estimates"] == result.summary["error estimates"]
 
 
@@ -218,7 +232,7 @@ def test_the_readings_of_another_scene_are_not_taken(finished, tmp_path):
     assert left["scene"] == fingerprint(coarser(scene("implicit")))
     left["scene"], left["reading"]["maximum depth [-]"] = "another", {"maximum depth [mm]": 1.0}
     (tmp_path / FILE).write_text(json.dumps(left))
-    assert run_stated(scene("implicit"), out=tmp_path).summary["error estimates"] == pytest.approx(
+    assert run_stated(scene("implicit"), out=tmp_path, figures=False).summary["error estimates"] == pytest.approx(
         result.summary["error estimates"]
     )
 
@@ -228,7 +242,7 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     short = replace(short, program=replace(short.program, strokes=2))
     left = {"scene": fingerprint(coarser(short)), "gave up": "no equilibrium"}
     (tmp_path / FILE).write_text(json.dumps(left))
-    summary = run_stated(short, out=tmp_path).summary
+    summary = run_stated(short, out=tmp_path, figures=False).summary
     assert summary["status"] == "completed"
     assert summary["warnings"] == [
         "the coarser companion run gave up: no equilibrium; the error of the mesh is not known"
@@ -245,7 +259,7 @@ def test_a_run_is_written_before_its_errors_are_known(tmp_path):
         found["before"] = json.loads((tmp_path / "summary.json").read_text())
         summary["error estimates"]["peak pressure [-]"] = 0.1
 
-    run(scene("implicit"), out=tmp_path, errors=state)
+    run(scene("implicit"), out=tmp_path, errors=state, figures=False)
     assert {"result.h5", "series.csv"} <= found["files"]
     assert found["before"]["status"] == "completed"
     after = json.loads((tmp_path / "summary.json").read_text())
@@ -258,22 +272,21 @@ def test_who_stops_waiting_for_errors_has_all_else(tmp_path):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        run(scene("implicit"), out=tmp_path, errors=state)
+        run(replace(scene("implicit"), deactivation=None), out=tmp_path, errors=state)
     assert {"history.png", "profiles.png", "section.png"} <= {file.name for file in tmp_path.iterdir()}
     assert json.loads((tmp_path / "summary.json").read_text())["status"] == "completed"
 
 
 @pytest.mark.parametrize("there", [True, False])
-def test_figures_are_drawn_half_by_the_worker_or_else_all_here(finished, tmp_path, monkeypatch, there):
-    drawn, folder = [], finished[0]
+def test_figures_are_drawn_half_by_the_worker_or_else_all_here(tmp_path, monkeypatch, there):
+    drawn, part = [], replace(scene("implicit"), deactivation=None)
     plot = wear.plot
     monkeypatch.setattr(wear, "plot", lambda *a, **how: drawn.append(plot(*a, **how)))  # a worker has its own
     worker = Worker("ngwear.error_estimates.coarser_runs")
     if not there:
         worker.end()
-    for name in (FILE, COARSEST):
-        shutil.copy(folder / name, tmp_path / name)
-    run_stated(scene("implicit"), out=tmp_path, worker=worker)
+    without_companions(part, tmp_path)
+    run_stated(part, out=tmp_path, worker=worker)
     pictures = {tmp_path / f"{name}.png" for name in ("section", "profiles", "peak_pressure", "history")}
     (here,) = drawn
     assert tmp_path / "profiles.png" in here
@@ -290,7 +303,7 @@ def test_section_is_drawn_once_the_part_is_mounted_and_again_worn(tmp_path):
         begun.append({file.name for file in tmp_path.glob("*.png")})
         (tmp_path / "section.png").write_bytes(b"new")
 
-    run(scene("implicit"), out=tmp_path, on_step=mounted)
+    run(replace(scene("implicit"), deactivation=None), out=tmp_path, on_step=mounted)
     assert begun[0] == {"section.png"}
     assert {file.name for file in tmp_path.glob("*.png")} >= {"section.png", "history.png"}
     assert (tmp_path / "section.png").stat().st_size > 1000

@@ -18,7 +18,9 @@ ASKED = 2e-3
 
 
 def to(error):
-    return replace(scene("implicit"), deactivation=None, wear=Wear(), accuracy=Accuracy(error=error))
+    block = scene("implicit")
+    few = replace(block.program, strokes=4)
+    return replace(block, deactivation=None, wear=Wear(), accuracy=Accuracy(error=error), program=few)
 
 
 @pytest.fixture
@@ -130,9 +132,9 @@ def test_the_command_line_refuses(asked, told, sheet_file, tmp_path, capsys):
     assert told in capsys.readouterr().err
 
 
-def test_the_command_line_takes_a_preset_and_an_error(sheet_file, tmp_path):
-    sheet = str(sheet_file)
-    for asked in ("draft", "0.05"):
+def test_the_command_line_takes_a_preset_and_an_error(write_sheet, tmp_path):
+    sheet = str(write_sheet(tmp_path, ("strokes = 4", "strokes = 2")))
+    for asked, more in (("draft", ["--alone"]), ("0.05", [])):
         out = tmp_path / asked
-        assert main(["run", sheet, "--out", str(out), "--accuracy", asked, "--quiet"]) == 0
+        assert main(["run", sheet, "--out", str(out), "--accuracy", asked, "--quiet", *more]) == 0
         assert ("levels" in json.loads((out / "summary.json").read_text())) == (asked == "0.05")

@@ -181,12 +181,33 @@ def test_power_one_is_archard(sheet):
     assert archard.stage.contacts["roller"].pressure_wear is None
 
 
-@pytest.mark.parametrize("law", LAWS[:4], ids=named)
+WAYS = {"never": {"remesh": "never"}, "explicit": {"scheme": "explicit"}, "jump": {"step": "jump"}}
+FEW = [(0, "never"), (0, "explicit"), (0, "jump"), (1, "jump"), (2, "explicit"), (3, "never")]
+
+
+@pytest.fixture(scope="module")
+def worn_as_due(tmp_path_factory, write_sheet):
+    """``worn_as_due(law)``: the end of the small scene with this law."""
+    sheet, found = read_scene(write_sheet(tmp_path_factory.mktemp("laws"))), {}
+
+    def worn(law):
+        if law not in found:
+            found[law] = last(with_law(sheet, law))
+        return found[law]
+
+    return worn
+
+
 @pytest.mark.parametrize(
-    "wear", [{"remesh": "never"}, {"scheme": "explicit"}, {"step": "jump"}], ids=["never", "explicit", "jump"]
+    ("law", "way"),
+    [
+        pytest.param(LAWS[k], way, marks=[] if (k, way) in FEW else pytest.mark.slow, id=f"{way}-{named(LAWS[k])}")
+        for k in range(4)
+        for way in WAYS
+    ],
 )
-def test_every_way_to_wear_takes_nearly_the_same(sheet, law, wear):
-    due, other = last(with_law(sheet, law)), last(with_law(sheet, law, wear=wear))
+def test_every_way_to_wear_takes_nearly_the_same(sheet, worn_as_due, law, way):
+    due, other = worn_as_due(law), last(with_law(sheet, law, wear=WAYS[way]))
     for state in (due, other):
         assert state.ledger.removed == pytest.approx(state.ledger.worn, rel=1e-6)
         assert state.ledger.worn > 0
@@ -208,9 +229,8 @@ def test_energy_follows_a_friction_that_changes_with_the_distance(sheet):
 def test_wear_in_partial_slip_follows_the_law(tmp_path, write_sheet):
     once = 'name = "stroke"\ntravel = 10.0\n'
     both = [f'name = "{n}"\ntravel = 0.1\ndirection = {sign}\n' for n, sign in (("out", 1), ("back", -1))]
-    scene = changed(
-        tmp_path, write_sheet, (once, "\n[[program.stroke]]\n".join(both)), ("friction = 0.1", "friction = 0.3")
-    )
+    turns = (once, "\n[[program.stroke]]\n".join(both))
+    scene = changed(tmp_path, write_sheet, turns, ("friction = 0.1", "friction = 0.3"), ("strokes = 4", "strokes = 2"))
     assert scene.may_stick(scene.contacts[0])
     laws = (None, PowerWear(exponent=1.0, reference_pressure=3.0), PowerWear(exponent=2.0, reference_pressure=0.5))
     archard, one, two = (last(with_law(scene, law)).ledger.removed for law in laws)

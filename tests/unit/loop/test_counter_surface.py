@@ -91,9 +91,22 @@ def test_surface_that_sticks_in_part_wears_where_it_slips(tmp_path, write_sheet)
     assert state.counters["roller"].area == pytest.approx(COUNTER_K / K * state.ledger.worn, rel=0.02)
 
 
-def test_a_worn_plate_comes_away(tmp_path, write_sheet):
-    scenes = [read_scene(write_sheet(tmp_path / name, *PLATE, *TO_AND_FRO, *more)) for name, more in NEITHER_AND_BOTH]
-    alone, both = (run(scene, figures=False) for scene in scenes)
+NEITHER_AND_BOTH = [("part", ()), ("both", (WEARS,))]
+
+
+@pytest.fixture(scope="module")
+def plates(tmp_path_factory, write_sheet):
+    """Under a plate, the part that wears and both that do: folder and result of each run."""
+    found = {}
+    for name, more in NEITHER_AND_BOTH:
+        folder = tmp_path_factory.mktemp(name)
+        scene = read_scene(write_sheet(folder, *PLATE, *TO_AND_FRO, *more))
+        found[name] = folder / "out", run(scene, out=folder / "out", figures=False)
+    return found
+
+
+def test_a_worn_plate_comes_away(plates):
+    alone, both = (plates[name][1] for name, _ in NEITHER_AND_BOTH)
     rows = both.recorder.rows
     depth = rows[-1]["roller counter-surface depth [mm]"]
     column = "roller force y [N/mm]"
@@ -101,9 +114,6 @@ def test_a_worn_plate_comes_away(tmp_path, write_sheet):
     assert depth == pytest.approx(COUNTER_K * passed, rel=0.02)
     lost = 1 - rows[-1][column] / rows[0][column]
     assert lost > 1 - alone.recorder.rows[-1][column] / alone.recorder.rows[0][column] + 0.5 * depth / 0.02
-
-
-NEITHER_AND_BOTH = [("part", ()), ("both", (WEARS,))]
 
 
 def test_profile_is_kept_in_files_and_through_a_kill(tmp_path, write_sheet, monkeypatch):
@@ -134,13 +144,12 @@ def test_a_surface_that_wears_alone_is_refused_and_explained_otherwise(tmp_path,
     assert "0.0005 mm²/N" in told["effects"]["wear of the surface of 'roller'"]
 
 
-def test_a_worn_surface_is_drawn_and_only_then(tmp_path, write_sheet):
-    for name, more in NEITHER_AND_BOTH:
-        scene = read_scene(write_sheet(tmp_path / name, *PLATE, *TO_AND_FRO, *more))
-        whole = run(scene, out=tmp_path / name / "out", figures=False)
-        drawn = [path.name for path in plot(tmp_path / name / "out")]
+def test_a_worn_surface_is_drawn_and_only_then(plates):
+    for name, (folder, _) in plates.items():
+        drawn = [path.name for path in plot(folder)]
         assert ("counter_surface.png" in drawn) is (name == "both")
-    result, counter = read_result(tmp_path / "both" / "out"), whole.state.counters["roller"]
+    folder, whole = plates["both"]
+    result, counter = read_result(folder), whole.state.counters["roller"]
     assert worn_counters(result) == ["roller"]
     (panel,) = counter_figure(result).axes
     depths = [line.get_ydata().max() for line in panel.lines]

@@ -17,6 +17,7 @@ from ngwear.loop.law_changes import friction_range, steady_cycles
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import MooneyRivlin, PronySeries
+from ngwear.plots.wear import plot
 from ngwear.results.result_file import read_result
 from ngwear.scene.pin_scene import Pin, PinMesh
 from ngwear.scene.program import Program, Stroke
@@ -177,7 +178,8 @@ def test_a_coarser_run_lets_a_law_change_by_more(tmp_path, write_sheet):
 def test_jump_does_not_skip_a_phase(tmp_path, write_sheet):
     rates = ("specific_wear_rate = 1.0e-3", f"specific_wear_rate = {RATES}")
     scene = read_scene(with_friction(tmp_path, write_sheet, PHASES, rates, *JUMPING))
-    result = run(scene, out=tmp_path / "out")
+    result = run(scene, out=tmp_path / "out", figures=False)
+    plot(tmp_path / "out", share=(3, 4))
     with (tmp_path / "out" / "series.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert (tmp_path / "out" / "laws.png").is_file()
@@ -278,7 +280,7 @@ def test_pin_slides_with_the_friction_of_its_speed():
     sheet = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1500.0)
     law = Stribeck(boundary=0.5, full=0.05, speed=50.0)
     pin = Pin(material=sheet, series=PronySeries((1.0,), (1e-3,)), load=20.0, track_radius=math.inf, friction=law)
-    stage = PinStage(pin, PinMesh(patch=0.8, column=0.4, reach=3.0, beside=2.5), (0.0, 0.0, 2.0), speed=80.0)
+    stage = PinStage(pin, PinMesh(patch=1.0, column=0.5, reach=3.0, beside=2.5), (0.0, 0.0, 2.0), speed=80.0)
     stage.press()
     found = stage.result(80.0, stage.slide(80.0, SteadyOptions(tolerance=2e-3)), 0.0)
     assert found.surface_friction == pytest.approx(law.mu(0.0, 80.0), rel=0.05)

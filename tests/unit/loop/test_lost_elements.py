@@ -231,11 +231,15 @@ def close(first, second):
                 assert row[name] == other[name], name
 
 
-@pytest.mark.parametrize("stop", [0, 3])
-def test_interrupted_and_resumed_it_ends_as_uninterrupted(tmp_path, stop):
+@pytest.fixture(scope="module")
+def torn_whole():
+    return run(torn_scene(), figures=False)
+
+
+@pytest.mark.parametrize("stop", [pytest.param(0, marks=pytest.mark.slow), 3])
+def test_interrupted_and_resumed_it_ends_as_uninterrupted(tmp_path, torn_whole, stop):
     """Before and after elements are lost by every cause."""
-    torn = torn_scene()
-    whole = run(torn, figures=False)
+    torn, whole = torn_scene(), torn_whole
     assert min(whole.state.ledger.lost[fate] for fate in (Fate.TORN, Fate.DISTORTED, Fate.LOOSE)) > 0
 
     def interrupt(state):
@@ -250,8 +254,13 @@ def test_interrupted_and_resumed_it_ends_as_uninterrupted(tmp_path, stop):
     np.testing.assert_allclose(parts.state.contour.points, whole.state.contour.points, rtol=0, atol=1e-9)
 
 
+def on_large_elements(scene):
+    """Elements of twice the size do where it does not matter which they are."""
+    return replace(scene, accuracy=replace(scene.accuracy, patch=0.2, mounting=0.2))
+
+
 def test_resumed_fatigue_goes_on_where_it_was(tmp_path):
-    tiring = scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0))
+    tiring = on_large_elements(scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0)))
     tiring = replace(tiring, program=replace(tiring.program, strokes=4))
     whole = run(tiring, figures=False)
 
@@ -268,7 +277,7 @@ def test_resumed_fatigue_goes_on_where_it_was(tmp_path):
 
 @pytest.mark.parametrize("stroke", [3, 4])
 def test_a_cycle_that_is_taken_back_has_tired_nothing(monkeypatch, stroke):
-    tiring = scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0))
+    tiring = on_large_elements(scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0)))
     real = Wearing.take
 
     def take(self):

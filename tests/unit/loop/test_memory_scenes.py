@@ -53,17 +53,17 @@ def read_arms(tmp_path, write_sheet):
 
 def test_arms_are_read_and_shifted(remembering):
     factor = WLF(17.44, 51.6, 296.15).factor(303.15)
-    assert remembering.prony.ratios == (0.5, 0.4, 0.3)
-    assert remembering.prony.times == pytest.approx([0.1 * factor, factor, 10 * factor])
+    assert remembering.part.prony.ratios == (0.5, 0.4, 0.3)
+    assert remembering.part.prony.times == pytest.approx([0.1 * factor, factor, 10 * factor])
     assert remembering.program.cycle[0].duration == pytest.approx(0.5)
     assert remembering.program.duration == pytest.approx(2.0)
 
 
 def test_moduli_relative_to_the_instantaneous_stiffness_or_absolute(read_arms):
     shares = read_arms(arms_text(*BARE, ('"long-term"', '"instantaneous"'), ("[0.5, 0.4, 0.3]", "[0.3, 0.2, 0.1]")))
-    assert shares.prony.ratios == pytest.approx((0.75, 0.5, 0.25))
+    assert shares.part.prony.ratios == pytest.approx((0.75, 0.5, 0.25))
     absolute = read_arms(arms_text(*BARE, ('"long-term"', '"absolute"\nlong_term = 2.0')))
-    assert absolute.prony.ratios == pytest.approx((0.25, 0.2, 0.15))
+    assert absolute.part.prony.ratios == pytest.approx((0.25, 0.2, 0.15))
 
 
 @pytest.mark.parametrize("compound", ["filled rubber", "NBR"])
@@ -71,7 +71,7 @@ def test_compound_of_the_library(read_arms, compound):
     scene = read_arms(f'\n[material.prony]\ncompound = "{compound}"\n')
     assert scene.part.prony == filled_rubber().prony
     cold = read_arms(f'\n[material.prony]\ncompound = "{compound}"\ntemperature = 283.15\n')
-    assert cold.prony.times[0] > 2 * scene.part.prony.times[0]
+    assert cold.part.prony.times[0] > 2 * scene.part.prony.times[0]
 
 
 def test_smoothed_arms_are_three_a_decade(read_arms):
@@ -200,17 +200,25 @@ def test_stiffened_material_is_a_multiple():
         Stiffened(material=soft, factor=0.0, bulk_modulus=1000.0)
 
 
-def test_arms_too_weak_to_matter_change_nothing(sheet, remembering):
+@pytest.fixture(scope="module")
+def ends(tmp_path_factory, write_sheet):
+    """Runs of the small scene without and with memory."""
+    folder = tmp_path_factory.mktemp("ends")
+    scenes = [read_scene(write_sheet(folder / name, *how)) for name, how in (("elastic", ()), ("memory", REMEMBERS))]
+    return [run(scene, figures=False) for scene in scenes]
+
+
+def test_arms_too_weak_to_matter_change_nothing(remembering, ends):
     """The memory's own machinery adds no error of its own."""
     weak = replace(remembering, part=replace(remembering.part, prony=PronySeries((1e-9, 1e-9), (0.3, 3.0))))
     weak = replace(weak, accuracy=replace(weak.accuracy, folding_error=0.0))
-    with_arms, without = (run(scene, figures=False).summary for scene in (weak, sheet))
+    with_arms, without = run(weak, figures=False).summary, ends[0].summary
     assert with_arms["worn area [mm^2]"] == pytest.approx(without["worn area [mm^2]"], rel=1e-7)
 
 
-def test_under_a_constant_force_memory_hardly_changes_the_worn_area(sheet, remembering):
+def test_under_a_constant_force_memory_hardly_changes_the_worn_area(ends):
     """Under a given force the worn area is the law's, whatever the rubber; its depth and width are not."""
-    with_arms, without = (run(scene, figures=False).summary for scene in (remembering, sheet))
+    without, with_arms = (end.summary for end in ends)
     assert with_arms["worn area [mm^2]"] == pytest.approx(without["worn area [mm^2]"], rel=5e-3)
     assert with_arms["maximum depth [mm]"] != pytest.approx(without["maximum depth [mm]"], rel=1e-4)
 
@@ -233,8 +241,8 @@ def test_forces_of_a_ring_with_memory_are_in_balance(remembering):
 
 
 @pytest.mark.skipif(not has_pardiso(), reason="only PARDISO (the extra 'fast') repeats itself bit for bit")
-def test_stopped_and_resumed_memory_is_the_same_to_the_last_bit(tmp_path, remembering):
-    whole = run(remembering, figures=False)
+def test_stopped_and_resumed_memory_is_the_same_to_the_last_bit(tmp_path, remembering, ends):
+    whole = ends[1]
 
     def stop(state):
         if state.strokes == 2:

@@ -51,7 +51,8 @@ def by_time(name):
 def creeping_in(folder):
     """A sheet of rubber with memory under a roller that goes to and fro with much friction."""
     much = ("friction = 0.1", "friction = 0.6\nsticks = false")
-    return read_scene(_write_sheet(folder, *REMEMBERS, *TO_AND_FRO, much))
+    coarse = ("patch = 0.1", "patch = 0.2"), ("mounting = 0.15", "mounting = 0.2")
+    return read_scene(_write_sheet(folder, *REMEMBERS, *TO_AND_FRO, much, *coarse))
 
 
 @pytest.fixture

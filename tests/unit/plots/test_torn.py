@@ -1,7 +1,9 @@
 """Figures of a section that loses elements: of a block of squares whose fate is known, and of a run."""
 
 import math
+import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,12 +12,14 @@ from matplotlib.colors import to_rgba
 from ngwear.cli import BAD_INPUT, OK, main
 from ngwear.errors import ResultError
 from ngwear.geometry.cells import Fate
+from ngwear.loop.run import run
 from ngwear.plots.animation import FILE, FRAMES, animate, frames, worn_window
 from ngwear.plots.area_balance import AREAS, CAUSES, IN_ALL, book_figure
 from ngwear.plots.sections import living, lost, overlapping, sections, when, worn_face
 from ngwear.plots.stress import critical_stress, directions, stress_figure, tensile
 from ngwear.plots.torn import LOST, face_figure, ridge_figure, ridge_window
 from ngwear.results.result_file import ResultFile, Snapshot, read_result
+from ngwear.scene.read_scene import read_scene
 
 WIDE, HIGH, SIDE, WORN = 30, 10, 0.1, 0.02  # squares, mm, and how far the face has receded in the end
 PICTURES = ("torn_profiles", "ridge_evolution", "stress_field", "material_book")
@@ -213,10 +217,17 @@ def test_window_of_the_moving_picture_holds_the_worn_face(result):
     assert low < 0 < WORN < high
 
 
-def test_run_that_deactivates_draws_its_figures(tmp_path, write_sheet):
-    out = tmp_path / "out"
-    scene = write_sheet(tmp_path, *DEACTIVATION)
-    assert main(["run", str(scene), "--out", str(out), "--quiet"]) == OK
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory, write_sheet):
+    """A run from the command line."""
+    folder = tmp_path_factory.mktemp("torn")
+    scene = write_sheet(folder, *DEACTIVATION, ("patch = 0.1", "patch = 0.2"), ("mounting = 0.15", "mounting = 0.2"))
+    assert main(["run", str(scene), "--out", str(folder / "out"), "--quiet", "--alone"]) == OK
+    return folder / "out"
+
+
+def test_run_that_deactivates_draws_its_figures(tmp_path, ran):
+    out = Path(shutil.copytree(ran, tmp_path / "out"))
     for name in PICTURES:
         assert (out / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
         (out / f"{name}.png").unlink()
@@ -231,8 +242,8 @@ def test_run_that_deactivates_draws_its_figures(tmp_path, write_sheet):
 def test_time_and_damage_are_kept(tmp_path, write_sheet):
     damage = 'depth = 0.3\ndamage = { criterion = "tensile normal stress", critical = 90.0 }'
     changes = (*DEACTIVATION, ("depth = 0.3", damage), ("travel = 10.0", "travel = 10.0\nspeed = 20.0"))
-    scene = write_sheet(tmp_path, *changes, ("strokes = 4", "strokes = 2"))
-    assert main(["run", str(scene), "--out", str(tmp_path / "out"), "--quiet"]) == OK
+    scene = read_scene(write_sheet(tmp_path, *changes, ("strokes = 4", "strokes = 2")))
+    run(scene, out=tmp_path / "out", figures=False)
     result = read_result(tmp_path / "out")
     assert result.damage == ("tensile normal stress", 90.0)
     assert [s.time for s in result.snapshots] == pytest.approx([0.5 * s.stroke for s in result.snapshots])

@@ -30,6 +30,7 @@ def fine(tmp_path_factory, write_sheet):
         scene,
         accuracy=replace(scene.accuracy, patch=0.025, mounting=0.1),
         program=replace(scene.program, strokes=20),
+        wear=replace(scene.wear, step="fixed", max_jump=5),
     )
     return scene, worn(scene, folder / "archard", None, 1.6 * RATE)
 

@@ -161,6 +161,7 @@ def test_chosen_leaves_alone_what_bears_nothing():
     )
 
 
+@pytest.mark.slow
 def test_presets_agree_within_what_they_are_for():
     """Worn depth of a draft within 5 %, of engineering within 2 % of sixteen elements across, over 40 strokes."""
     many = replace(GIVEN.program, strokes=40)

@@ -20,7 +20,7 @@ def cylinder(**changes):
 
 @pytest.fixture(scope="module")
 def slides():
-    return [slide(cylinder(), speed) for speed in (1e-3, 60.0, 1e6)]
+    return [slide(cylinder(), speed, fineness=8) for speed in (1e-3, 60.0, 1e6)]
 
 
 def test_friction_vanishes_where_nothing_or_everything_is_relaxed(slides):
