@@ -276,10 +276,10 @@ class _Companions:
 def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
     """What a companion has left in its file; None if it has not, or another scene's has."""
     try:
-        left = json.loads(file.read_text())
+        left = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return left if left.get("scene") == fingerprint(scene) else None
+    return left if isinstance(left, dict) and left.get("scene") == fingerprint(scene) else None
 
 
 def left_of(result: Result) -> dict[str, Any]:

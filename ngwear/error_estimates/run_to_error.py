@@ -217,9 +217,13 @@ def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str,
         shutil.rmtree(folder.path / LEVELS, ignore_errors=True)
         return []
     try:
-        notes = json.loads(file.read_text())
-        of, levels = notes["scene"], notes["levels"]
-    except (OSError, ValueError, KeyError) as error:
+        notes = json.loads(file.read_text(encoding="utf-8"))
+        of, levels = notes["scene"], list(notes["levels"])
+        for level in levels:
+            _place(folder, level)  # made of numbers alone: no text of the file becomes a path
+        if not levels:
+            raise ValueError("it tells of no level")
+    except (OSError, ValueError, KeyError, TypeError) as error:
         raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
     if of != fingerprint(scene):
         raise ResultError(f"{folder.path} holds a run of another scene (or of a changed one): give another folder")
@@ -229,7 +233,7 @@ def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str,
 
 def _place(folder: OutFolder, level: Mapping[str, Any]) -> Path:
     """Where a level's files are put away."""
-    parts = "" if level[PARTS] == 1 else f" in {level[PARTS]} parts"
+    parts = "" if level[PARTS] == 1 else f" in {level[PARTS]:d} parts"
     return folder.path / LEVELS / f"{level[ACROSS]:g}{parts}"
 
 
