@@ -14,6 +14,7 @@ Usage: python price_of_absence.py [ROUNDS] [EFFECT ...]
 import hashlib
 import json
 import os
+import pickle
 import statistics
 import subprocess
 import sys
