@@ -31,7 +31,7 @@ _NAMES = {
     "ngwear.error_estimates.run": "run read_result",
     "ngwear.error_estimates.cost": "cost",
     "ngwear.explanation.explain": "explain",
-    "ngwear.verify.run_cases": "verify",
+    "ngwear.verify": "verify",
     "ngwear.parallel.sweep": "sweep",
     "ngwear.profiles.comparison": "compare_profile",
     "ngwear.loop.stepper": "Stepper",

@@ -54,4 +54,6 @@ from ngwear.surfaces import Cylinder as Cylinder
 from ngwear.surfaces import Plane as Plane
 from ngwear.surfaces import bore as bore
 from ngwear.surfaces import rod as rod
-from ngwear.verify.run_cases import verify as verify
+from ngwear.verify import verify as verify
+
+__version__: str

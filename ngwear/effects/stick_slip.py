@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import ngsolve as ng
 import numpy as np
 
@@ -68,7 +70,7 @@ class StickSlip(Friction):
         points = {ng.SEGM: ng.IntegrationRule(ng.SEGM, 1), ng.TRIG: ng.IntegrationRule(ng.TRIG, 1)}
         form += (law * weight).Compile() * ng.ds(definedon=region, intrules=points)
 
-    def _slips(self, fields: dict[str, ng.CoefficientFunction], tangents: tuple) -> list[ng.CoefficientFunction]:
+    def _slips(self, fields: dict[str, Any], tangents: tuple[tuple[Any, ...], ...]) -> list[ng.CoefficientFunction]:
         """Slip along each tangent since the last accepted state [mm]."""
         u, motion = fields[DISPLACEMENT], self.contact.motion(fields)
         passed = [u[i] - self._before[i] - m + self._motion_before[i] for i, m in enumerate(motion)]
@@ -115,7 +117,13 @@ class StickSlip(Friction):
         return self._slid + self.contact.sample_middles(ng.sqrt(sum(s * s for s in slips)))
 
 
-def _laws(tractions: list, slips: list, *, bound: ng.CoefficientFunction, give: ng.CoefficientFunction) -> list:
+def _laws(
+    tractions: list[ng.CoefficientFunction],
+    slips: list[ng.CoefficientFunction],
+    *,
+    bound: ng.CoefficientFunction,
+    give: ng.CoefficientFunction,
+) -> list[ng.CoefficientFunction]:
     """What vanishes for each tangent: the slip where it sticks, the traction less its limit where it slips [mm].
 
     A point sticks if ``|T - d| < mu P``, where d is the traction ``2 s / give`` of the slip, but a tenth of mu P at

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import ngsolve as ng
 import numpy as np
 
@@ -63,7 +65,7 @@ def _rigid_motions(problem: Problem) -> list[tuple[str, Array]]:
     u = problem.fields[DISPLACEMENT]
     dim = problem.body.mesh.dim
     places = [c + u[i] for i, c in enumerate((ng.x, ng.y, ng.z)[:dim])]
-    motions: list[tuple[str, list]] = []
+    motions: list[tuple[str, list[Any]]] = []
     for i in range(1 if problem.kinematics.axisymmetric else dim):
         motions.append((f"along {'xyz'[i]}", [1.0 if k == i else 0.0 for k in range(dim)]))
     if not problem.kinematics.axisymmetric:

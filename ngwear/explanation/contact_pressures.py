@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import NgwearError
 from ngwear.geometry.body import Body
-from ngwear.loop.mounting import mount, unworn_body
+from ngwear.loop.mounting import MAY_COME, mount, unworn_body
 from ngwear.loop.refinement import wanted_size
 from ngwear.loop.stage import Stage
-from ngwear.loop.stepper import MAY_COME
 from ngwear.scene.contact import Contact
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene

@@ -7,6 +7,8 @@ types; a triangle among quadrilaterals costs what a quadrilateral costs.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
@@ -94,7 +96,7 @@ class Cells:
         return unknowns, np.array([values[k] for k in self._kinds]), np.array([slopes[k] for k in self._kinds])
 
 
-def _filled(rows: list, by: int | None = None) -> Index:
+def _filled(rows: Sequence[Sequence[int]], by: int | None = None) -> Index:
     """Rows of numbers, each filled up to the longest by a number or by its own first."""
     lengths = set(map(len, rows))
     if len(lengths) > 1:

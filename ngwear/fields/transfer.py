@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
@@ -40,7 +42,7 @@ class PointSearch:
         return np.asarray(field(self.mapped)).reshape(len(self.mapped), -1)
 
 
-def nearest_places(mesh: ng.Mesh, points: Array) -> NDArray:
+def nearest_places(mesh: ng.Mesh, points: Array) -> NDArray[Any]:
     """Points of a mesh that is not deformed, as its fields take them; for one outside, a point inside near to it."""
     mapped = mesh(*points.T)
     lost = np.flatnonzero(mapped["nr"] < 0)

@@ -80,7 +80,8 @@ def read(path: Path, kind: Format, classes: Iterable[type] = ()) -> Any:
                 tree = json.loads(_member(archive, TREE).tobytes())
                 return Unpacker(arrays, classes).unpack(tree)
     except Exception as error:  # what damaged bytes raise depends on where they are
-        raise ResultError(f"{path} cannot be read as a {kind.name} ({error}); {kind.remedy}") from error
+        found = f"there is no {error}" if isinstance(error, KeyError) else error
+        raise ResultError(f"{path} cannot be read as a {kind.name} ({found}); {kind.remedy}") from error
     if found != f"ngwear {kind.name}":
         raise ResultError(f"{path} is no {kind.name} of ngwear, but calls itself {found!r}; {kind.remedy}")
     raise other_version(path, kind, version, made_by)

@@ -34,7 +34,7 @@ def write(file: IO[bytes], fill: Callable[[Any], None]) -> None:
 
 def stored_name(name: str) -> str:
     """The name without what HDF5 does not take for a part of it."""
-    kept = name.replace("/", " per ").replace("\0", " ")
+    kept = name.replace("/", " per ")
     return kept if kept.strip(".") else f"'{kept}'"
 
 

@@ -63,13 +63,13 @@ class Packer:
 
     def __init__(self, classes: Iterable[type] = ()) -> None:
         self._names = {cls: name for name, cls in by_name(classes).items()}
-        self._pieces: dict[str, list[AnyArray]] = {}
-        self._sizes: dict[str, int] = {}
+        self._pieces: dict[np.dtype[Any], list[AnyArray]] = {}
+        self._sizes: dict[np.dtype[Any], int] = {}
         self._done: dict[int, tuple[AnyArray, list[Any]]] = {}  # the array, too, or another one may get its id
 
     def arrays(self) -> list[AnyArray]:
         """What all values packed so far have in arrays."""
-        return [np.concatenate(pieces) for pieces in self._pieces.values()]
+        return [np.concatenate(pieces, dtype=kind) for kind, pieces in self._pieces.items()]
 
     def pack(self, value: Any) -> Any:
         """What JSON holds of a value.
@@ -120,13 +120,15 @@ class Packer:
         return [self.pack(value) for value in values]
 
     def _put(self, array: AnyArray) -> list[Any]:
-        """Where in the long arrays it is: type, first number, shape, order in memory."""
+        """Where it is: which of the long arrays, the first number there, shape, order in memory."""
         if id(array) in self._done:
             return self._done[id(array)][1]
-        kind, order = array.dtype.str, "F" if array.flags.fnc else "C"
-        where = [kind, self._sizes.get(kind, 0), list(array.shape), order]
-        self._pieces.setdefault(kind, []).append(array.ravel(order="F" if array.flags.fnc else "C"))
-        self._sizes[kind] = self._sizes.get(kind, 0) + array.size
+        pieces = self._pieces.setdefault(array.dtype, [])
+        which, first = list(self._pieces).index(array.dtype), self._sizes.get(array.dtype, 0)
+        in_columns = array.flags.fnc
+        where = [which, first, list(array.shape), "F" if in_columns else "C"]
+        pieces.append(array.ravel(order="F" if in_columns else "C"))
+        self._sizes[array.dtype] = first + array.size
         self._done[id(array)] = array, where
         return where
 
@@ -137,14 +139,14 @@ class Unpacker:
     Parameters
     ----------
     arrays : iterable of array
-        The long ones.
+        The long ones, in their order.
     classes : iterable of type
         The only ones of which objects are made.
     """
 
     def __init__(self, arrays: Iterable[AnyArray], classes: Iterable[type] = ()) -> None:
         self._classes = by_name(classes)
-        self._arrays = {array.dtype.str: array for array in arrays}
+        self._arrays = dict(enumerate(arrays))
         self._done: dict[tuple[Any, ...], AnyArray] = {}
 
     def unpack(self, packed: Any) -> Any:
@@ -202,11 +204,11 @@ class Unpacker:
         return made
 
     def _take(self, where: list[Any]) -> AnyArray:
-        kind, first, shape, order = where
-        key = (kind, first, tuple(shape), order)
+        which, first, shape, order = where
+        key = (which, first, tuple(shape), order)
         if key not in self._done:
             size = int(np.prod(shape, dtype=object)) if shape else 1
-            whole = self._arrays[kind]
+            whole = self._arrays[which]
             if first < 0 or size < 0 or first + size > len(whole):
                 raise ValueError("an array lies beyond what the file holds")
             self._done[key] = whole[first : first + size].reshape(shape, order=order).copy(order="K")

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import abc
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.geometry.cells import Cells
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.outline import Array, Outline
+
+if TYPE_CHECKING:  # only sections that lose elements have cells
+    from ngwear.geometry.cells import Cells
 
 
 @dataclass(frozen=True)

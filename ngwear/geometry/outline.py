@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
-from ngwear.geometry.outline_files import Drawing, read_drawing, write_drawing
 
 Array = NDArray[np.float64]
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9 _-]*")
@@ -111,6 +110,8 @@ class Outline:
         GeometryError
             If the file cannot be read or its outline is not simple, closed and counter-clockwise.
         """
+        from ngwear.geometry.outline_files import read_drawing  # the libraries of file formats take time to load
+
         try:
             return cls(*read_drawing(Path(path)))
         except GeometryError as error:
@@ -124,6 +125,8 @@ class Outline:
         GeometryError
             If the file cannot be written.
         """
+        from ngwear.geometry.outline_files import Drawing, write_drawing
+
         write_drawing(Drawing(self.points, self.names, self.corners, self.provenance), Path(path))
 
     @classmethod
@@ -258,10 +261,11 @@ class Outline:
 
         They lie on the spline, or on the polygon (``on_chord``), whose area then stays exactly the same.
         """
-        t = np.unique(np.asarray(t, dtype=float) % len(self))
+        t = np.sort(np.asarray(t, dtype=float) % len(self))  # without np.unique, which loads masked arrays
         t = t[t != np.floor(t)]
         if len(t) == 0:
             return self
+        t = t[np.append(True, t[1:] > t[:-1])]
         at = np.floor(t).astype(int) + 1
         segment = at - 1
         return replace(

@@ -43,11 +43,19 @@ class SizeField:
         points = np.atleast_2d(points)
         h = np.full(len(points), self.coarse)
         if len(self.seeds):
-            from scipy.spatial.distance import cdist
-
-            distance = cdist(points, self.seeds)
-            h = np.minimum(h, (self.sizes + self.grading * distance).min(axis=1))
+            h = np.minimum(h, (self.sizes + self.grading * _distances(points, self.seeds)).min(axis=1))
         return h
+
+
+def _distances(points: Array, seeds: Array) -> Array:
+    """From each point to each seed, shape (n, k); SciPy's ``cdist`` takes longer to load than to compute."""
+    square = np.subtract.outer(points[:, 0], seeds[:, 0])
+    square *= square
+    along = np.subtract.outer(points[:, 1], seeds[:, 1])
+    along *= along
+    square += along
+    distances: Array = np.sqrt(square, out=square)
+    return distances
 
 
 def fitted(contour: Outline, field: SizeField, *, on_chord: bool = False) -> Outline:

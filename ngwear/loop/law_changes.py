@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ngwear.laws import Curve
-from ngwear.scene.scene import Contact, Scene
+from ngwear.scene.contact import Contact
+from ngwear.scene.scene import Scene
 
 CHANGE, MOST_CHANGE = 5.0, 0.5  # times the wear error: of a law in a jump, over its highest value in the scene
 LAG = 0.5  # times the wear error: of the friction that a jump uses behind its mean over the jump

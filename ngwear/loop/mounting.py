@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.body import Body
-from ngwear.loop.refinement import mounting_field, unworn_outline
+from ngwear.loop.refinement import mounting_field, unworn_outline, wanted_size
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
+from ngwear.materials import PronySeries
 from ngwear.scene.scene import Scene
 from ngwear.wear.archard import critical_distance
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from ngwear.geometry.element_body import ElementBody
 
 log = logging.getLogger(__name__)
+
+MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
 
 
 def warn_if_unstable(scene: Scene) -> None:
@@ -88,3 +91,25 @@ def refuse_idle_contacts(state: State) -> None:
                 spec.surface,
                 "lifts off: it touches its edges in no stroke and wears nothing; move it closer or give a force",
             )
+
+
+def give_memory(state: State, scene: Scene, arms: PronySeries) -> None:
+    """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
+    from ngwear.fields.background_mesh import Background
+    from ngwear.loop.memory_over_cycles import CycleMemory
+
+    (first, *_), phase = scene.program.cycle, state.phases[0]
+    body = state.stage.body
+    field = wanted_size(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
+    background = Background(Body(body.contour, field))
+    state.stage = stage = Stage(scene, body, background)
+    stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+    stage.begin(phase.vector)
+    stage.problem.set_loads(stage.stroke_loads(first))
+    for term in stage.problem.terms:
+        term.refresh()
+    state.work.add(advance(stage.problem, stage.mounted_loads()))
+    durations = [stroke.duration for stroke in scene.program.cycle]
+    if stage.memory is not None:
+        mounted = stage.memory.stress()
+        state.memory = CycleMemory(background, arms, durations, mounted=mounted, rest=scene.program.rest)

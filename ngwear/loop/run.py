@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from copy import copy
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -155,10 +156,15 @@ def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, 
 
 def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
     """Keep the loaded section as it was when a run gave up: what there is to see tells why."""
+    phases, memory = state.phases, state.memory
+    state.phases, state.memory = list(phases), copy(memory)
     try:
-        recorder.add_sections(stepper.sections(state))
+        recorder.add_sections(stepper.look_ahead(state))
     except (ConvergenceError, GeometryError, MeshError) as error:
         log.info("the last section is not kept: %s", error)
+    finally:
+        state.phases, state.memory = phases, memory
+        stepper.stand(state)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:

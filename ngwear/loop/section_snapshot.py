@@ -40,6 +40,9 @@ def section_snapshot(stage: Stage) -> Arrays:
         out["fluid pressure [MPa]"] = np.array(stage.fluid.pressure.Get())
         out["wetted edges"] = np.column_stack([ends[wet, 0], nodes.middle(ends[wet]), ends[wet, 1]])
         out["wetted share [-]"] = share[wet]
+    held = body.outline.vertices[body.outline.on(tuple(e for s in stage.scene.supports for e in s.edges))]
+    if len(held):
+        out["held edges"] = np.column_stack([held[:, 0], nodes.middle(held), held[:, 1]])
     for name, contact in stage.contacts.items():
         out |= {f"{name}: {quantity}": values for quantity, values in _contact(contact).items()}
     return {name: _short(values) for name, values in out.items()}

@@ -14,17 +14,15 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
-from ngwear.geometry.body import Body
 from ngwear.loop.element_sizes import chosen, laid_out
 from ngwear.loop.law_changes import steady_cycles
-from ngwear.loop.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
-from ngwear.loop.refinement import outgrown, wanted_size
+from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unworn_body, warn_if_unstable
+from ngwear.loop.refinement import outgrown
 from ngwear.loop.remeshing import is_due, remesh, still_ahead
 from ngwear.loop.section_snapshot import section_snapshot
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.wear_step import Wearing
-from ngwear.materials import PronySeries
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.wear.cycle_jumps import Plan, planned
@@ -38,7 +36,6 @@ NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found 
 FIRST = 10  # times as long as the first step is the longest one
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
-MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
 
 
 class Stepper:
@@ -111,7 +108,7 @@ class Stepper:
             self._settle_cycle(state)
         arms = scene.arms
         if arms is not None:
-            self._remember(state, arms)
+            give_memory(state, scene, arms)
         self.on_mount(1.0)
         return state
 
@@ -141,28 +138,6 @@ class Stepper:
             iterations = self._solve_phase(state, i, stroke, sliding)
             wearing.look()
             state.reports.append(self._observe(state, i, iterations, sliding))
-
-    def _remember(self, state: State, arms: PronySeries) -> None:
-        """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
-        from ngwear.fields.background_mesh import Background
-        from ngwear.loop.memory_over_cycles import CycleMemory
-
-        scene = self.scene
-        (first, *_), phase = scene.program.cycle, state.phases[0]
-        body = state.stage.body
-        field = wanted_size(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
-        background = Background(Body(body.contour, field))
-        state.stage = stage = Stage(scene, body, background)
-        stage.problem.state.vec.FV().NumPy()[:] = phase.vector
-        stage.begin(phase.vector)
-        stage.problem.set_loads(stage.stroke_loads(first))
-        for term in stage.problem.terms:
-            term.refresh()
-        state.work.add(advance(stage.problem, stage.mounted_loads()))
-        durations = [stroke.duration for stroke in scene.program.cycle]
-        if stage.memory is not None:
-            mounted = stage.memory.stress()
-            state.memory = CycleMemory(background, arms, durations, mounted=mounted, rest=scene.program.rest)
 
     def finished(self, state: State) -> bool:
         """Whether all strokes of the program are done."""
@@ -214,22 +189,6 @@ class Stepper:
                 state.reports.insert(-1, self._seen(state, i, self._next_cycle(state)))
                 state.phases[i] = saved
         self.stand(state)
-
-    def sections(self, state: State) -> list[dict[str, NDArray[np.generic]]]:
-        """The loaded section of each stroke of the cycle on the present outline; changes nothing but the work done.
-
-        Raises
-        ------
-        ConvergenceError
-            If a stroke has no equilibrium there.
-        """
-        found, plan = [], self._next_cycle(state)
-        for i, saved in enumerate(list(state.phases)):
-            self._seen(state, i, plan)
-            state.phases[i] = saved
-            found.append(section_snapshot(state.stage))
-        self.stand(state)
-        return found
 
     def look_ahead(self, state: State) -> list[StrokeReport]:
         """Solve the next cycle's strokes on the present outline, in their order; state and memory are theirs then."""
@@ -371,7 +330,7 @@ class Stepper:
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """What there is to see at the stroke's equilibrium."""
         stage = state.stage
-        kept = state.strokes + sliding.repeats in self.scene.kept
+        kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
         return StrokeReport(
             phase=index,
             last_stroke=state.strokes,

@@ -153,13 +153,13 @@ Keep = Callable[[int, Any], None]
 
 
 def _feed(
-    executor: Executor, function: Any, points: list, waiting: deque[int], most: int, keep: Keep
+    executor: Executor, function: Any, points: list[Any], waiting: deque[int], most: int, keep: Keep
 ) -> list[tuple[int, BaseException]]:
     """Work off ``waiting``, at most so many at a time, until done or broken; what a broken executor was at is returned.
 
     Only what is under way is lost with it: the rest stays in ``waiting``.
     """
-    running: dict[Future, int] = {}
+    running: dict[Future[Any], int] = {}
     lost: list[tuple[int, BaseException]] = []
     while running or (waiting and not lost):
         while waiting and not lost and len(running) < most:
@@ -178,7 +178,7 @@ def _feed(
     return lost
 
 
-def _in_processes(function: Any, points: list, waiting: Iterable[int], workers: int, keep: Keep) -> None:
+def _in_processes(function: Any, points: list[Any], waiting: Iterable[int], workers: int, keep: Keep) -> None:
     queue = deque(waiting)
     while queue:
         with one_thread_pool(min(workers, len(queue))) as pool:
@@ -233,7 +233,7 @@ def _digest(function: Any, point: Any) -> str:
     return hashlib.sha256(data.getvalue()).hexdigest()[:32]
 
 
-def _check(points: list, executor: Any, workers: Any, folder: Any, resume: bool) -> None:
+def _check(points: list[Any], executor: Any, workers: Any, folder: Any, resume: bool) -> None:
     if not points:
         raise SceneError("sweep.points", points, "give at least one point")
     if workers is not None and not (isinstance(workers, int) and workers >= 1):

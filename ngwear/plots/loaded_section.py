@@ -33,6 +33,7 @@ TOP, BOTTOM, LEFT, RIGHT = 0.62, 0.52, 0.66, 0.15  # inches around the panels
 BAR, BESIDE, LABELS, TICKS = 0.16, 0.1, 0.85, 0.62  # colour bar, left of it, right of it; left of a panel of pressures
 NARROWEST, PANEL, GAP = 3.0, 0.6, 0.62  # panels of pressures: least width, least height, between two
 FLAT = 0.42  # height over width of a view that is drawn above the pressures
+TICK_X, TICK_Y = 0.5, 0.3  # inches for a number on an axis of pressures
 STRIP, DISC, BARE = 0.36, 0.75, 0.12  # inches of view beside the section: with a plane, with a disc, with nothing
 
 
@@ -103,6 +104,7 @@ class _Picture:
     def draw(self, field: str, states: dict[str, Section], *, mesh: bool) -> Figure:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
+        from matplotlib.ticker import MaxNLocator
 
         names = pressed(list(states.values()), self.kept.surfaces)
         layout = self._layout(len(names))
@@ -120,14 +122,16 @@ class _Picture:
         bar.set_label(field)
         bar.ax.grid(visible=False)
         panels = [place(*box) for box in layout.pressures]
-        for panel, name in zip(panels, names, strict=True):
+        for panel, name, box in zip(panels, names, layout.pressures, strict=True):
             draw_pressure(panel, name, self.kept.surfaces.get(name), states)
+            for axis, inches in ((panel.xaxis, box[2] / TICK_X), (panel.yaxis, box[3] / TICK_Y)):
+                axis.set_major_locator(MaxNLocator(nbins=max(2, int(inches)), steps=[1, 2, 5, 10]))
         if panels:
             corner = 1 - RIGHT / layout.size[0], 1 - 0.06 / layout.size[1]
             figure.legend(
                 *panels[0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=corner, ncols=2, frameon=False
             )
-            self._name_pressures(figure, layout)
+            self._name_pressures(figure, layout, panels)
         pressure = self.section.fluid_pressure
         stroke = self.shown.kind if len({s.kind for s in self.kept.snapshots}) > 1 else ""
         told = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
@@ -135,15 +139,20 @@ class _Picture:
         figure.text(left / layout.size[0], 1 - 0.12 / layout.size[1], title, va="top", fontsize=FONT + 2)
         return figure
 
-    def _name_pressures(self, figure: Figure, layout: _Layout) -> None:
+    def _name_pressures(self, figure: Figure, layout: _Layout, panels: list[Axes]) -> None:
+        """Write what the panels show left of the first ones, clear of the numbers there."""
         low = layout.pressures[-1][1]
         first = min(box[0] for box in layout.pressures)
         top = max(box[1] + box[3] for box in layout.pressures)
         wide, high = layout.size
+        left = [panel for panel, box in zip(panels, layout.pressures, strict=True) if box[0] == first]
+        numbers = [n for p in left for n in p.yaxis.get_major_formatter().format_ticks(list(p.get_yticks()))]
+        clear = 0.14 + FONT / 72 * 0.6 * max(map(len, numbers))
         text = "contact pressure [MPa]"
-        figure.text((first - 0.54) / wide, 0.5 * (low + top) / high, text, rotation=90, va="center", ha="left")
+        figure.text((first - clear) / wide, 0.5 * (low + top) / high, text, rotation=90, va="center", ha="right")
 
     def _draw_section(self, axes: Axes, layout: _Layout, field: str, states: dict[str, Section], *, mesh: bool) -> Any:
+        from matplotlib.patheffects import withTickedStroke
         from matplotlib.ticker import MaxNLocator
         from shapely import union_all
 
@@ -164,6 +173,9 @@ class _Picture:
         for state in list(states.values())[:-1]:
             _line(axes, _border(state), "0.25", 0.8, zorder=3.6, ls=(0, (3, 2)))
         _line(axes, _border(section), "k", 1.0, zorder=4)
+        if len(section.held):
+            hatch = withTickedStroke(spacing=6, angle=-135, length=0.6)
+            _line(axes, curves(section.points, section.held), "k", 0.8, zorder=3.8, path_effects=[hatch])
         rubber = _region(section)
         taken = [rubber]
         if section.fluid_pressure > 0:

@@ -179,12 +179,13 @@ class Recorder:
         stroke, time = self.scene.program.counted(last), self.scene.program.elapsed(last)
         return Snapshot(stroke, kind, report.contour.points, profiles, report.section, elements, time)
 
-    def add_sections(self, sections: Sequence[dict[str, NDArray[np.generic]]]) -> None:
-        """Add the loaded sections of the cycle's strokes to the last rows of these, where there are none yet."""
-        for stroke, section in zip(self.scene.program.cycle, sections, strict=True):
-            last = max((k for k, s in enumerate(self.snapshots) if s.kind == stroke.name), default=None)
+    def add_sections(self, reports: Sequence[Any]) -> None:
+        """Add the loaded sections of some strokes to the last snapshots of their kinds, if there are none yet."""
+        for report in reports:
+            kind = self.scene.program.cycle[report.phase].name
+            last = max((k for k, s in enumerate(self.snapshots) if s.kind == kind), default=None)
             if last is not None and not self.snapshots[last].section:
-                self.snapshots[last] = replace(self.snapshots[last], section=section)
+                self.snapshots[last] = replace(self.snapshots[last], section=report.section)
 
     @property
     def sections(self) -> KeptSections:

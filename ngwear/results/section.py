@@ -60,8 +60,8 @@ class Section:
         the one across a plane section.
     stretch : array, shape (nv,)
         The largest principal one at the vertices [-].
-    wetted : array of int, shape (m, 3)
-        Start, midpoint and end of each mesh edge that the fluid presses on.
+    wetted, held : array of int, shape (m, 3)
+        Start, midpoint and end of each mesh edge that the fluid presses on, and that a support holds.
     fluid_pressure : float
         [MPa].
     contacts : dict of str to SectionContact
@@ -74,6 +74,7 @@ class Section:
     stress: Array
     stretch: Array
     wetted: Index
+    held: Index
     fluid_pressure: float
     contacts: dict[str, SectionContact]
 
@@ -104,6 +105,7 @@ class Section:
             stress=real(STRESS),
             stretch=real(STRETCH),
             wetted=whole("wetted edges")[real("wetted share [-]") > 0.5] if wet else np.empty((0, 3), dtype=np.intp),
+            held=whole("held edges") if "held edges" in arrays else np.empty((0, 3), dtype=np.intp),
             fluid_pressure=float(real("fluid pressure [MPa]")) if wet else 0.0,
             contacts={
                 name: SectionContact(

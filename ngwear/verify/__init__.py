@@ -6,13 +6,15 @@ imported when they are run; listing the cases loads no solver.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
+from types import ModuleType
 
 from ngwear.errors import SceneError
-from ngwear.verify.base import Check
+from ngwear.verify.base import Check, Checks
 
 
 @dataclass(frozen=True)
@@ -139,18 +141,26 @@ ALL = "all"
 QUICK = tuple(name for name, case in CASES.items() if case.quick)
 RESUMED = ("torn_seal",)  # with runs of a quarter of an hour and more
 
-__all__ = ["ALL", "CASES", "QUICK", "Case", "Check", "checks_of", "chosen", "listing", "verify"]
+__all__ = ["ALL", "CASES", "QUICK", "Case", "Check", "Checks", "checks_of", "chosen", "listing", "verify"]
 
 
-def verify(names: Iterable[str] | None = None) -> list[Check]:
-    """Run the named cases and return their checks; without names those that take about a minute together.
+def verify(*cases: str, out: Path | str | None = None) -> Checks:
+    """Compare with references that others derived.
+
+    Parameters
+    ----------
+    *cases : str
+        Their names, ``"all"`` for all; without any, those that together take about a minute.
+    out : path or None
+        Folder in which cases that take hours keep their runs, to go on with.
 
     Raises
     ------
     SceneError
         For a name that is no case.
     """
-    return [check for name in chosen(names) for check in checks_of(name)]
+    folder = None if out is None else Path(out)
+    return Checks(check for name in chosen(cases or None) for check in checks_of(name, folder))
 
 
 def chosen(names: Iterable[str] | None = None) -> list[str]:
@@ -184,3 +194,13 @@ def checks_of(name: str, folder: Path | None = None) -> Iterator[Check]:
     """
     run = import_module(CASES[name].module).run
     yield from run(folder / name) if folder is not None and name in RESUMED else run()
+
+
+class _Room(ModuleType):
+    """The package as a callable, for it shares its name with the verb ``ngwear.verify``."""
+
+    def __call__(self, *cases: str, out: Path | str | None = None) -> Checks:
+        return verify(*cases, out=out)
+
+
+sys.modules[__name__].__class__ = _Room

@@ -76,6 +76,18 @@ class Check:
         }
 
 
+class Checks(list[Check]):
+    """Checks of one or more cases; printed, one line each."""
+
+    def __str__(self) -> str:
+        return "\n".join(map(str, self))
+
+    @property
+    def passed(self) -> bool:
+        """Whether all of them have passed."""
+        return all(check.passed for check in self)
+
+
 class Stopwatch:
     """Processor time of this process since the last start [s]."""
 

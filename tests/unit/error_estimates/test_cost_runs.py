@@ -4,6 +4,8 @@ import csv
 import io
 import json
 import math
+import os
+import signal
 import time
 from concurrent.futures import Executor, Future
 from dataclasses import replace
@@ -17,7 +19,7 @@ from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.error_estimates import settings as knobs_of
 from ngwear.error_estimates.cost import CSV, JSON, PNG, RUNS, cost
 from ngwear.error_estimates.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
-from ngwear.error_estimates.ladder import STOPPED
+from ngwear.error_estimates.ladder import STOPPED, Measurement
 from ngwear.error_estimates.settings import at, knobs
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.loop import stepper
@@ -201,7 +203,7 @@ def test_a_study_that_was_killed_goes_on(studied, monkeypatch, tmp_path):
     few_rungs(monkeypatch)
     folder = tmp_path / "out"
     shutil.copytree(out, folder)
-    lost = sorted((folder / RUNS).glob("*.pickle"))[0]
+    lost = sorted((folder / RUNS).glob("*.npz"))[0]
     lost.unlink()
     kept = {path.name: path.stat().st_mtime_ns for path in (folder / RUNS).iterdir()}
     again = cost(read_scene(file), budget=AMPLE, folder=folder, figures=False)
@@ -222,6 +224,50 @@ def test_a_run_out_of_time_is_stopped_and_says_what_it_would_take(sheet):
     assert outcome.result.needed > 100.0
 
 
+@pytest.mark.parametrize(("function", "point"), [(time.sleep, 120.0), (sum, range(10**12))], ids=["asleep", "in C"])
+def test_a_call_that_takes_no_notice_is_ended_with_its_process(tmp_path, function, point):
+    """One lets nothing else of Python run: no thread and no signal reaches it."""
+    begun = time.monotonic()
+    how = {"folder": tmp_path, "classes": (Measurement,)}
+    with one_thread_pool(1) as workers:
+        (outcome,) = sweep(function, [point], executor=Limited(workers, 2.0, grace=2.0), **how)
+    assert (outcome.result.status, outcome.result.message) == (STOPPED, NO_TIME)
+    assert 2.0 < outcome.result.wall <= time.monotonic() - begun < 30.0
+    (again,) = sweep(function, [point], executor=Limited(Here(), 2.0), resume=True, **how)
+    assert again.restored, "a call of the same study does not try once more"
+
+
+def test_a_process_that_dies_before_its_time_is_a_failure(sheet):
+    with one_thread_pool(1) as workers:
+        (outcome,) = sweep(os._exit, [3], executor=Limited(workers, 60.0))
+    assert outcome.failure.kind == "BrokenProcessPool"
+
+
+def test_the_keyboard_interrupts_a_run_that_has_time_left():
+    def interrupted():
+        signal.raise_signal(signal.SIGINT)
+        time.sleep(1.0)
+
+    with pytest.raises(KeyboardInterrupt):
+        _timed(time.time(), 30.0, 30.0, interrupted)
+    assert math.isnan(_clock.sent)
+
+
+def test_a_run_that_ends_as_its_time_is_over_is_either_there_or_stopped():
+    """Nothing of the clock is left for whatever comes next."""
+    for k in range(60):
+        until = time.monotonic() + 0.02 + 2e-4 * (k % 11 - 5)
+
+        def short(until=until):
+            while time.monotonic() < until:
+                pass
+            return "there"
+
+        found = _timed(time.time(), 0.02, 30.0, short)
+        assert found == "there" or found.status == STOPPED
+        assert not _clock.over
+
+
 class Here(Executor):
     """Calls at once, in this process."""
 
@@ -237,7 +283,9 @@ def test_an_alarm_that_is_swallowed_stops_the_run_all_the_same(sheet, monkeypatc
 
     def swallows(scene, *, on_step, **_):
         try:
-            time.sleep(30.0)
+            until = time.monotonic() + 30.0
+            while time.monotonic() < until:
+                time.sleep(0.01)
         except Exception as error:
             if made_of_it == "another error":
                 raise ConvergenceError("the solver failed") from error
@@ -258,7 +306,9 @@ def test_an_alarm_that_nothing_catches_stops_the_run_all_the_same():
         while time.time() < until:
             _clock.check()
 
-    found = _timed(time.time() - 1.0, 0.01, slow)
+    before = signal.getsignal(signal.SIGINT)
+    found = _timed(time.time() - 1.0, 0.01, 30.0, slow)
+    assert signal.getsignal(signal.SIGINT) is before
     assert (found.status, found.message) == (STOPPED, NO_TIME)
     assert 1.0 < found.wall < 3.0
     assert math.isnan(found.needed)

@@ -2,6 +2,7 @@
 
 import functools
 import os
+import pickle
 import subprocess
 import sys
 import time
@@ -97,13 +98,13 @@ def test_killed_sweep_goes_on(tmp_path, log):
     folder, script = tmp_path / "sweep", tmp_path / "script.py"
     script.write_text(KILLED.format(tests=str(Path(__file__).parent), log=str(log), folder=str(folder)))
     process = subprocess.Popen([sys.executable, script])
-    while not (folder.is_dir() and len(list(folder.glob("*.pickle"))) >= 3):
+    while not (folder.is_dir() and len(list(folder.glob("*.npz"))) >= 3):
         assert process.poll() is None
         time.sleep(0.02)
     process.kill()
     process.wait()
     time.sleep(1.0)
-    before = len(list(folder.glob("*.pickle")))
+    before = len(list(folder.glob("*.npz")))
     calls = len(log.read_text().split())
     assert before <= calls <= before + 2  # the workers have ended with their parent
     function = functools.partial(at.counted, log=str(log), wait=0.25)
@@ -115,17 +116,72 @@ def test_killed_sweep_goes_on(tmp_path, log):
 def test_what_cannot_be_written_is_a_failure(tmp_path):
     with ThreadPoolExecutor(1) as pool:
         (outcome,) = sweep(at.unpicklable, [1], executor=pool, folder=tmp_path)
-    assert not outcome.ok
-    assert not list(tmp_path.glob("*.pickle"))
+    assert "the class builtins.function cannot be written" in outcome.failure.message
+    assert "dataclasses that are listed as 'classes'" in outcome.failure.message
+    assert not list(tmp_path.glob("*.npz"))
 
 
 def test_damaged_file_is_named(tmp_path):
     with ThreadPoolExecutor(1) as pool:
         sweep(at.square, [1], executor=pool, folder=tmp_path)
-        (file,) = tmp_path.glob("*.pickle")
+        (file,) = tmp_path.glob("*.npz")
         file.write_bytes(b"cut off")
-        with pytest.raises(ResultError, match=f"{file.name} of the point 1 .*delete it"):
+        with pytest.raises(ResultError, match=rf"the result of the point 1 is lost: .*{file.name} cannot.*delete it"):
             sweep(at.square, [1], executor=pool, folder=tmp_path, resume=True)
+
+
+def test_results_made_of_dataclasses_come_back_as_they_were(tmp_path):
+    with ThreadPoolExecutor(2) as pool:
+        how = {"executor": pool, "folder": tmp_path, "classes": (at.Found, at.Ending)}
+        first = sweep(at.described, [1.0, 2.0], **how)
+        again = sweep(at.described, [2.0, 1.0], resume=True, **how)
+        assert all(o.restored for o in again)
+        for mine, its in zip(first, reversed(again), strict=True):
+            np.testing.assert_array_equal(mine.result.values, its.result.values)
+            assert (mine.result.notes, mine.result.ending) == (its.result.notes, its.result.ending)
+        unlisted = sweep(at.described, [3.0], executor=pool, folder=tmp_path)
+        assert "sweep_points.Found cannot be written" in unlisted[0].failure.message
+        with pytest.raises(ResultError, match="an object of the class 'Found', which has no place here"):
+            sweep(at.described, [1.0], executor=pool, folder=tmp_path, resume=True)
+
+
+@pytest.mark.parametrize("classes", [(int,), ("Found",), (lambda: 1,)])
+def test_classes_that_cannot_be_stored_are_refused(tmp_path, classes):
+    with pytest.raises(SceneError, match=r"sweep\.classes.*must be a dataclass or an enumeration"):
+        sweep(at.square, [1], folder=tmp_path, classes=classes)
+
+
+class Bomb:
+    """A pickle that runs a program when it is read."""
+
+    def __reduce__(self):
+        return os.mkdir, ("exploded",)
+
+
+def test_a_crafted_file_is_refused_and_never_executed(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "sweep"
+    with ThreadPoolExecutor(1) as pool:
+        sweep(at.square, [1], executor=pool, folder=folder)
+        (file,) = folder.glob("*.npz")
+        file.write_bytes(pickle.dumps(Bomb()))
+        with pytest.raises(ResultError, match="cannot be read as a result of a sweep"):
+            sweep(at.square, [1], executor=pool, folder=folder, resume=True)
+    assert not (tmp_path / "exploded").exists()
+
+
+def test_results_of_the_first_version_are_told_and_not_read(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    old = tmp_path / "0123.pickle"
+    old.write_bytes(pickle.dumps(Bomb()))
+    with ThreadPoolExecutor(1) as pool:
+        with pytest.raises(
+            ResultError, match=r"0123\.pickle holds a result of ngwear 0\.1; this is ngwear .*delete such"
+        ):
+            sweep(at.square, [1], executor=pool, folder=tmp_path, resume=True)
+        assert results(sweep(at.square, [3], executor=pool, folder=tmp_path)) == [9]
+    assert old.exists()
+    assert not (tmp_path / "exploded").exists()
 
 
 def test_function_typed_into_a_session_is_refused():

@@ -77,7 +77,7 @@ def test_rate_area_shift_and_tilt_are_found_again(compare, seed):
     """The part wore at 1.3 times the run's rate over half of its distance: the outline after 65 of 100 mm."""
     found = compare(scanned(65.0, seed=seed), strokes=5).as_dict()
     x = np.linspace(0.3, 3.8, 1500)
-    assert found["rod specific wear rate [mm^2 per N]"] == pytest.approx(1.3 * 2e-6, rel=0.03)
+    assert found["rod specific wear rate [mm^2/N]"] == pytest.approx(1.3 * 2e-6, rel=0.03)
     off = abs(found["measured over simulated specific wear rate [-]"] - 1.3)
     assert off < 4 * found["standard error of it [-]"] < 0.12
     assert found["worn area, measured [mm^2]"] == pytest.approx(trapezoid(worn(0, x) - worn(65.0, x), x), rel=0.03)
@@ -150,7 +150,7 @@ def test_a_part_worn_beyond_the_run_is_said_so(compare):
     told = found.as_dict()
     assert found.beyond
     assert found.factor is None
-    assert told["rod specific wear rate [mm^2 per N]"] is None
+    assert told["rod specific wear rate [mm^2/N]"] is None
     assert any("deeper than the run's last outline: run about" in note for note in told["notes"])
     json.dumps(told, allow_nan=False)
 
@@ -268,8 +268,8 @@ def test_command(finished, profile_of_run, capsys):
     assert main(["compare", str(finished), str(profile_of_run), "--strokes", "2"]) == OK
     shown = capsys.readouterr().out
     numbers = json.loads((finished / "measured.json").read_text())
-    assert numbers["roller specific wear rate [mm^2 per N]"] == pytest.approx(1.5e-3, rel=0.05)
-    assert "roller specific wear rate [mm^2 per N]" in shown
+    assert numbers["roller specific wear rate [mm^2/N]"] == pytest.approx(1.5e-3, rel=0.05)
+    assert "roller specific wear rate [mm^2/N]" in shown
     assert shown.split()[-2:] == [str(finished / "measured.json"), str(finished / "measured.png")]
     assert (finished / "measured.png").stat().st_size > 10_000
     assert {p.name: p.read_bytes() for p in finished.iterdir() if p.name in before} == before

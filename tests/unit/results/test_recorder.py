@@ -3,7 +3,6 @@ import errno
 import io
 import json
 import os
-import resource
 from dataclasses import replace
 
 import numpy as np
@@ -87,6 +86,7 @@ def test_fields_that_do_not_fit_on_the_disk(finished, sheet):
     folder = Folder(finished, sheet, resume=True)
     _, recorder = load(folder, sheet)
     before = (finished / FIELDS).read_bytes()
+    resource = pytest.importorskip("resource", reason="Windows limits no process' files")
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (len(before) // 3, hard))
     try:
