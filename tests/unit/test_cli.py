@@ -128,7 +128,7 @@ def test_interrupt_keeps_what_there_is(tmp_path, sheet_file, capsys, monkeypatch
     with monkeypatch.context() as patch:
         patch.setattr(Stepper, "advance", interrupted)
         assert run(sheet_file, tmp_path / "out") == INTERRUPTED
-    assert "interrupted; go on with --resume" in capsys.readouterr().err
+    assert "interrupted; continue with --resume" in capsys.readouterr().err
     assert run(sheet_file, tmp_path / "out", "--resume") == OK
 
 

@@ -153,7 +153,7 @@ def test_what_a_file_cannot_say_leaves_none(sheet_scene_module, tmp_path):
         pass
 
     part = replace(sheet_scene_module.part, material=Rubber(shear=1.0, bulk_modulus=100.0))
-    with pytest.raises(SceneError, match="a scene file cannot say this; it knows NeoHooke, MooneyRivlin"):
+    with pytest.raises(SceneError, match="a scene file can only hold NeoHooke, MooneyRivlin"):
         replace(sheet_scene_module, part=part).write(tmp_path / "own.toml")
     assert not list(tmp_path.iterdir())
 

@@ -125,7 +125,7 @@ def test_a_level_keeps_what_is_not_about_the_error():
 
 @pytest.mark.parametrize(
     ("asked", "told"),
-    [("rough", "accuracy = 'rough': must be one of"), ("1e-7", "is less than an estimate"), ("2", "must be below 1")],
+    [("rough", "accuracy = 'rough': must be one of"), ("1e-7", "is below 0.001"), ("2", "must be below 1")],
 )
 def test_the_command_line_refuses(asked, told, sheet_file, tmp_path, capsys):
     assert main(["run", str(sheet_file), "--out", str(tmp_path / "out"), "--accuracy", asked]) == 2
