@@ -14,11 +14,7 @@ LOOSEST = 0.05  # largest default wear_error; longer steps err by more than the 
 LONGEST_JUMP = 5.0  # times wear_error
 ALIKE = 12.0  # elements across to which the defaults above belong
 GRADING = 0.25  # if lengths are given
-GRADING_ACROSS, STEEPER, STEEPEST = (
-    0.4,
-    0.4,
-    0.5,
-)  # for ALIKE elements across; exponent of its growth for fewer; largest
+GRADING_ACROSS, STEEPER, STEEPEST = 0.4, 0.4, 0.5  # for ALIKE elements across; exponent for fewer; largest
 TOLERANCES = ("stress_error", "wear_error", "longest_jump", "depth_error")
 LEAST_ACROSS, MOST_ACROSS = 0.5, 200.0
 LEAST_ERROR = 1e-3  # scatter between two meshes from node positions alone, measured on the shipped scenes

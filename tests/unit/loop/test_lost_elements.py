@@ -117,7 +117,7 @@ def test_a_deactivation_that_is_no_table_is_refused(read, tmp_path, write_sheet)
 
 
 def test_rubber_with_memory_is_refused(read):
-    with pytest.raises(SceneError, match=r"material\.prony = .*rubber without memory only: leave one of both out"):
+    with pytest.raises(SceneError, match=r"material\.prony = .*rubber without memory: remove"):
         read(*REMEMBERS)
 
 

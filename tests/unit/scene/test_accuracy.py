@@ -179,5 +179,5 @@ def test_lost_elements_need_a_length():
     given = scene("implicit")
     losing = {"deactivation": Deactivation(depth=0.2), "wear": replace(given.wear, remesh="never")}
     for accuracy in (Accuracy(across=6.0), Accuracy(error=0.01)):
-        with pytest.raises(SceneError, match=r"give accuracy\.patch, a length in mm"):
+        with pytest.raises(SceneError, match=r"give accuracy\.patch in mm"):
             replace(given, accuracy=accuracy, **losing)
