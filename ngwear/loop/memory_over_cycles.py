@@ -76,7 +76,7 @@ class CycleMemory:
         return halves
 
     def enter(self, term: StrokeMemory, plan: Plan, kind: int) -> None:
-        """Give the term its history for the solve of the last stroke of a kind; the memory is at the start of the plan."""
+        """Give the term its history for the solve of the last stroke of a kind; the memory is at the plan's start."""
         before = before_last(plan, kind, self.durations, self.times)
         _, mean = step_factors(self.durations[kind], self.times)
         weight = mean * self.ratios

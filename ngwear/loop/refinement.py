@@ -22,10 +22,7 @@ FINER = 0.7  # of the size by the contacts: the stress indicator counts if it as
 NARROWEST = 0.5  # of ``patch``: smallest elements, in narrow zones of a contact
 NEAR, NEARER = 2.0, 1.0  # times ``patch``: gaps that may close before the next mesh, and before the next check
 LEAST = 0.5  # of these, also if the remaining wear is less
-TURN, WIDEST_TURN = (
-    0.5,
-    0.7,
-)  # rad, angle of the outline between nodes outside contacts; largest, with few elements across
+TURN, WIDEST_TURN = 0.5, 0.7  # rad, angle of the outline between nodes outside contacts; with few elements across
 FEW = 4.0  # elements across below which that angle grows
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # factor on the required element edge beyond which a new mesh is due
 

@@ -113,7 +113,7 @@ def test_a_finest_level_that_is_not_enough_warns(tmp_path, monkeypatch):
 
 
 def test_a_single_run_is_no_answer():
-    with pytest.raises(SceneError, match="is met by several runs"):
+    with pytest.raises(SceneError, match="needs several runs"):
         Stepper(to(0.01))
 
 
