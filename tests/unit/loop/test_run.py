@@ -163,7 +163,7 @@ def test_roller_under_force_finds_the_sheet_from_where_it_is(tmp_path, write_she
 
 def test_folder_that_holds_a_run_is_not_overwritten(finished, sheet):
     before = {p.name: p.read_bytes() for p in finished.iterdir()}
-    with pytest.raises(ResultError, match=r"already holds a run: go on with --resume, or give another folder"):
+    with pytest.raises(ResultError, match=r"already holds a run: continue it with --resume, or give another folder"):
         run(sheet, out=finished)
     assert {p.name: p.read_bytes() for p in finished.iterdir()} == before
 

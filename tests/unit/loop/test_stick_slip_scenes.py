@@ -27,7 +27,7 @@ def scene(folder, write_sheet, *changes):
 @pytest.mark.parametrize(
     ("changes", "sticks", "why"),
     [
-        ((), False, "never turns round"),
+        ((), False, "direction of sliding never changes"),
         ((to_and_fro(10.0),), False, "the shortest stroke is 10 mm, an elastic slip about 1.2 mm at most"),
         ((to_and_fro(0.1),), True, "the shortest stroke is 0.1 mm"),
         ((to_and_fro(10.0), ("force = 0.5", "force = 0.5\nsticks = true")), True, "as the scene asks"),
