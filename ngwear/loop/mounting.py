@@ -1,4 +1,4 @@
-"""Before the first stroke: the unworn section meshed, and mounted."""
+"""Mesh the unworn section and mount the part, before the first stroke."""
 
 from __future__ import annotations
 
@@ -22,18 +22,18 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
+MAY_COME = 5.0  # element edges in the contact: gap within which the outline may come into contact later
 
 
 def warn_if_unstable(scene: Scene) -> None:
-    """Warn, where the caller was called, of explicit steps that grow ripples of the pressure."""
+    """Warn if explicit wear steps are too long: the pressure then oscillates from node to node."""
     wear, cycle = scene.wear, scene.program.cycle
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
     critical = critical_distance(scene.accuracy.lengths.patch, rate, scene.part.material.plane_strain_modulus)
     longest = max(s.travel for s in cycle)
     if wear.scheme == "explicit" and longest > critical:
         warnings.warn(
-            f"explicit wear over {longest:.4g} mm a step is unstable: the pressure will show the mesh beyond "
+            f"explicit wear over {longest:.4g} mm a step is unstable: the pressure oscillates from node to node beyond "
             f"{critical:.4g} mm; use scheme = 'implicit', or shorter strokes",
             RuntimeWarning,
             stacklevel=3,
@@ -41,7 +41,7 @@ def warn_if_unstable(scene: Scene) -> None:
 
 
 def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody:
-    """The unworn section, meshed for mounting; ``across`` as of ``mounting_field``."""
+    """The unworn section, meshed for mounting; ``across`` as in ``mounting_field``."""
     if scene.deactivation is not None:
         from ngwear.loop import lost_elements
 
@@ -50,12 +50,12 @@ def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody
 
 
 def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
-    """Bring the surfaces to their places, without fluid pressure; ``on_mount`` is called with the fraction done.
+    """Move the surfaces to their places, without fluid pressure; ``on_mount`` is called with the completed fraction.
 
     Raises
     ------
     ConvergenceError
-        If no equilibrium carries the load.
+        If no equilibrium is found.
     """
     problem = stage.problem
     loads = stage.mounted_loads()
@@ -75,12 +75,14 @@ def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
         return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)  # grows while it is easy
     except ConvergenceError as error:
         found = str(error).removesuffix(f"\n{error.report}")
-        advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds
-        raise ConvergenceError(f"no equilibrium found that carries the load{advice}: {found}", error.report) from None
+        advice = (
+            "" if "nothing" in found else "; lower force, interference or friction"
+        )  # not if the part has no support
+        raise ConvergenceError(f"no equilibrium found under the mounting load{advice}: {found}", error.report) from None
 
 
 def refuse_idle_contacts(state: State) -> None:
-    """SceneError for a surface that never touches the part: it would wear nothing, without a word."""
+    """SceneError if a surface that should wear the part touches it in no stroke."""
     problem = state.stage.problem
     for spec in state.stage.scene.contacts:
         contact = state.stage.contacts[spec.name]
@@ -89,12 +91,12 @@ def refuse_idle_contacts(state: State) -> None:
             raise SceneError(
                 f"contact '{spec.name}'.surface",
                 spec.surface,
-                "lifts off: it touches its edges in no stroke and wears nothing; move it closer or give a force",
+                "touches its edges in no stroke, so that nothing wears; move it closer or give a force",
             )
 
 
 def give_memory(state: State, scene: Scene, arms: PronySeries) -> None:
-    """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
+    """Start the memory of the rubber after refinement, from the mounted part at rest without fluid pressure."""
     from ngwear.fields.background_mesh import Background
     from ngwear.loop.memory_over_cycles import CycleMemory
 

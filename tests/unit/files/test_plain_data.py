@@ -336,8 +336,8 @@ def test_a_file_cut_anywhere_or_changed_anywhere_is_refused_or_the_same(tmp_path
             {"version": 4, "ngwear": "9.0"},
             r"a test of version 4, written by ngwear 9\.0.*throw it away, or take ngwear 9",
         ),
-        ({"format": "ngwear other"}, "is no test of ngwear, but calls itself 'ngwear other'; throw it away"),
-        ({"format": None}, "is no test of ngwear, but calls itself None"),
+        ({"format": "ngwear other"}, "is not a test of ngwear: its format is 'ngwear other'; throw it away"),
+        ({"format": None}, "is not a test of ngwear: its format is None"),
     ],
 )
 def test_other_versions_and_kinds_say_what_they_are_and_what_to_do(about, told, tmp_path):
