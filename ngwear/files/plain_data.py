@@ -29,10 +29,12 @@ class Storable(Protocol):
 
     def to_data(self) -> dict[str, Any]:
         """What ``from_data`` makes the same object of."""
+        ...
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> Self:
         """The object again."""
+        ...
 
 
 def by_name(classes: Iterable[type]) -> dict[str, type]:
