@@ -13,7 +13,7 @@ from typing import Any
 from ngwear.errors import NgwearError, ResultError
 from ngwear.files.version import VERSION
 
-OK, BAD_INPUT, GAVE_UP = 0, 2, 3
+OK, BAD_INPUT, GAVE_UP = 0, 2, 3  # exit codes; 1 is Python's own, for an error in the program
 BESIDE = (
     "ngwear.error_estimates.coarser_runs",
     "ngwear.plots.wear",
@@ -102,10 +102,10 @@ def main(arguments: list[str] | None = None) -> int:
         return BAD_INPUT
     except KeyboardInterrupt:
         print(f"ngwear: interrupted; {getattr(options, 'again', 'go on with --resume')}", file=sys.stderr)
-        return 130
+        return 130  # 128 + SIGINT, as shells say
     except BrokenPipeError:  # who reads the output, such as head, has seen enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python's own end would tell it once more
-        return 141
+        return 141  # 128 + SIGPIPE, as shells say
 
 
 def _run(options: argparse.Namespace) -> int:

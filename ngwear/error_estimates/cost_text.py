@@ -104,7 +104,7 @@ def _others(study: Study, setting: Setting) -> str:
     """What else a user reads of this run is off by, if it is more than the main quantity."""
     main = study.error(setting, study.main)
     errors = {q: study.error(setting, q) for q in study.quantities[1:]}
-    worse = {q: e for q, e in errors.items() if math.isfinite(e) and e > max(2 * main, 1e-3)}
+    worse = {q: e for q, e in errors.items() if math.isfinite(e) and e > max(2 * main, 1e-3)}  # what a user should know
     if not worse:
         return ""
     return " There the " + ", the ".join(f"{name_of(q)} is off by {per_cent(e)}" for q, e in worse.items()) + "."

@@ -19,7 +19,7 @@ from ngwear.errors import ResultError
 AnyArray = NDArray[Any]
 AS_THEY_ARE = (type(None), bool, int, float, str)
 KINDS = "biufcSUmM"  # of arrays: whatever has no Python objects in it
-SHORT = 8  # a list of numbers with fewer stays text
+SHORT = 8  # a list of numbers with fewer stays text: an array has a header of 128 bytes
 LARGEST = 2**63  # whole numbers from here on stay text
 
 

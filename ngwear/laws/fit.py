@@ -14,7 +14,7 @@ from ngwear.errors import SceneError
 from ngwear.laws.lubrication import Lubrication
 
 Array = NDArray[np.float64]
-TRIED = 16  # places tried for the ends of the phases before the best are refined
+TRIED = 16  # places tried for the ends of the phases before the best are refined: 560 starts for three ends
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
+# Settled on the shaft, whose depth erred by 2 % with 0.4 and 6 across, and the rod seal (adaptive_against_fixed.py).
 COARSE = 0.3  # of the section's smaller extent: where neither contact nor stress asks for less
 MOUNTING = 0.04  # of that extent
 

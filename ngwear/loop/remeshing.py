@@ -20,8 +20,9 @@ from ngwear.loop.state import State
 
 Array = NDArray[np.float64]
 
+# Settled on the rod seal; a mesh beyond them is no wrong one, only a worse one (``Body.move_to`` refuses those).
 SHORTEST = 0.4  # of its length when meshed: how short a segment may become before the outline is tidied
-LARGEST_JUMP = 1e-6  # of the section's area
+LARGEST_JUMP = 1e-6  # of the section's area, in a new mesh: rounding leaves 1e-15, a lost point far more
 FARTHEST = 1.0  # of the patch's edge: how far the outline may move on one mesh
 
 

@@ -32,6 +32,8 @@ from ngwear.wear.sliding_distance import Strokes
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+# These were settled on the rod seal (NARROWER, FIRST, MAY_COME) and the torn seal (LATE, HARDEST): the list in
+# tests/benchmarks/README.md says by which command.
 NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
 FIRST = 10  # times as long as the first step is the longest one
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
@@ -115,7 +117,7 @@ class Stepper:
     def _refine(self, state: State) -> None:
         """Mesh anew until the mesh is fine where the strokes of the cycle want it."""
         ahead = still_ahead(state)
-        while state.ledger.remeshes < 4:
+        while state.ledger.remeshes < 4:  # more bring little; the run meshes anew where it must
             vectors, laid = [phase.vector for phase in state.phases], state.stage.scene
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting's mesh may be too fine, too
             if state.across is not None:

@@ -18,8 +18,8 @@ from ngwear.materials.prony import MOST_ARMS, PronySeries
 from ngwear.materials.shift import WLF
 
 Array = NDArray[np.float64]
-PER_DECADE = (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3, 1.6)  # arms tried
-NOTABLE = 0.9  # a misfit is as good as the best if the best is above this share of it
+PER_DECADE = (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3, 1.6)  # arms tried; more overlap: a peak is over a decade wide
+NOTABLE = 0.9  # a misfit is as good as the best if the best is above this share of it: no arms for less
 
 
 class PoorFitWarning(UserWarning):
@@ -279,7 +279,7 @@ def _shift_between(fixed: Dma, moving: Dma) -> float:
 
     def mismatch(shift: float) -> float:
         low, high = max(x[0], y[0] + shift), min(x[-1], y[-1] + shift)
-        if high - low < 0.15 * span:
+        if high - low < 0.15 * span:  # too little in common to tell a shift by
             return 1e3 + abs(shift)
         at = np.linspace(low, high, 50)
         parts = []

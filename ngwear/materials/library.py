@@ -15,9 +15,9 @@ GENT = "Gent, Rubber Chem. Technol. 31 (1958) 896: Young's modulus from Shore A 
 FILLED = (
     "representative, not measured: non-negative Prony fit, one arm a decade, to a public filled-rubber master curve"
 )
-ROOM = 296.15  # K
+ROOM = 296.15  # K: 23 degrees Celsius, the standard atmosphere of ISO 23529
 
-# Uniaxial moduli [MPa] of the arms at 3.16e-7 ... 31.6 s, and the long-term one.
+# Uniaxial moduli [MPa] of the arms at 3.16e-7 ... 31.6 s, and the long-term one: see ``FILLED``.
 FILLED_ARMS = (31.59, 8.066, 5.818, 3.336, 2.444, 1.852, 1.133, 1.311, 1.070)
 FILLED_TIMES = tuple(10 ** (k + 0.5) for k in range(-7, 2))
 FILLED_LONG_TERM = 5.352

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ngwear.errors import SceneError, check_fields
 
 Array = NDArray[np.float64]
-MOST_ARMS = 40
+MOST_ARMS = 40  # two a decade over twenty decades: the whole of the glass transition
 
 
 @dataclass(frozen=True)

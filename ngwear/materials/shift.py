@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ngwear.errors import SceneError, check_fields
 
-GAS_CONSTANT = 8.31446261815324  # J/(mol K)
+GAS_CONSTANT = 8.31446261815324  # J/(mol K), exact since 2019 (SI)
 MOST_DECADES = 30.0  # of a shift: beyond the whole of the glass transition
 
 
@@ -40,7 +40,7 @@ class WLF:
     @classmethod
     def above_glass(cls, glass: float, reference: float) -> WLF:
         """Universal constants 17.44 and 51.6 K at the glass temperature, moved to another reference [K]."""
-        return cls(17.44, 51.6, glass).moved(reference)
+        return cls(17.44, 51.6, glass).moved(reference)  # WLF's universal constants
 
     def moved(self, reference: float) -> WLF:
         """Same curve about another reference temperature [K]."""

@@ -10,9 +10,9 @@ from ngwear.errors import SceneError
 from ngwear.materials.prony import MOST_ARMS, PronySeries
 
 Array = NDArray[np.float64]
-PER_DECADE = 3
-SAMPLES = 20  # frequencies a decade
-STRENGTHS = (1e-5, 1e2)  # of the smoothing, searched between
+PER_DECADE = 3  # arms: of n a decade the loss undulates by 2 / cosh(pi² n / ln 10): 5 % with 1, 1e-5 with 3
+SAMPLES = 20  # frequencies a decade: a Debye peak is over a decade wide, so that more tell no more
+STRENGTHS = (1e-5, 1e2)  # of the smoothing, searched between: it changes next to nothing, and flattens all
 
 
 def smooth(series: PronySeries, *, misfit: float) -> PronySeries:

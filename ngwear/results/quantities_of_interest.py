@@ -22,6 +22,7 @@ WHOLE = {
 }
 STROKE = {"peak pressure": PEAK, "contact width": "contact width [-]", "friction force": FRICTION}
 BY_TIME_STEP = "by the time step [-]"  # after a quantity: what of its error that is
+# The last half was settled on the filled seal (``verify error_estimates``); so many that chance averages out.
 PLACES = 17  # of the last half of the run, at which histories are read
 
 

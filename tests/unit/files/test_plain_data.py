@@ -190,7 +190,11 @@ def test_what_is_not_plain_is_refused_when_it_is_written(value):
         packed({"a": [value]}, KIND, CLASSES)
 
 
-@pytest.mark.parametrize("classes", [(int,), ("Point",), (Point, enum.Enum("Point", "A")), (lambda: 1,)], ids=str)
+@pytest.mark.parametrize(
+    "classes",
+    [(int,), ("Point",), (Point, enum.Enum("Point", "A")), (lambda: 1,)],
+    ids=["no dataclass", "name", "same name", "function"],
+)
 def test_classes_are_dataclasses_or_enumerations_of_different_names(classes):
     with pytest.raises(TypeError, match=r"must be a dataclass or an enumeration|two classes are named Point"):
         by_name(classes)
