@@ -14,38 +14,38 @@ from ngwear.errors import NgwearError, ResultError
 from ngwear.files.version import VERSION
 
 OK, BAD_INPUT, GAVE_UP = 0, 2, 3
-BESIDE = (
+SECOND_PROCESS = (
     "ngwear.error_estimates.coarser_runs",
     "ngwear.plots.wear",
     "h5py",
     "matplotlib.backends.backend_agg",
-)  # a run's second process
+)  # modules that the second process of a run needs
 
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="ngwear", description="Friction and abrasive wear of rubber parts.")
     parser.add_argument("--version", action="version", version=f"ngwear {VERSION}")
     commands = parser.add_subparsers(dest="command", required=True)
-    run = commands.add_parser("run", help="run a scene to its end")
+    run = commands.add_parser("run", help="simulate a scene to its last stroke")
     run.add_argument("scene", type=Path, metavar="SCENE.toml")
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
-    run.add_argument("--resume", action="store_true", help="go on with the run in DIR")
+    run.add_argument("--resume", action="store_true", help="continue the run in DIR")
     run.add_argument("--quiet", action="store_true", help="no progress bar")
-    run.add_argument("--alone", action="store_true", help="no coarser run beside it: the mesh's error is not estimated")
+    run.add_argument("--alone", action="store_true", help="no coarser runs: the error of the mesh is not estimated")
     run.add_argument(
         "--accuracy",
         metavar="PRESET|ERROR",
-        help="draft, engineering or reference, or the relative error of the depth to reach, such as 0.01, instead of "
-        "the scene's settings",
+        help="draft, engineering or reference, or the allowed relative error of the depth, such as 0.01; replaces the "
+        "accuracy in the scene",
     )
     run.set_defaults(do=_run)
-    verify = commands.add_parser("verify", help="compare with references that others derived")
+    verify = commands.add_parser("verify", help="compare with closed-form solutions and published results")
     verify.add_argument("cases", nargs="*", metavar="CASE")
     verify.add_argument("--json", action="store_true")
-    keeps = "folder in which torn_seal keeps its runs, hours in all, to go on with; a new one for changed code"
+    keeps = "folder for the runs of torn_seal (hours), to continue them; use a new folder after a change of the code"
     verify.add_argument("--out", type=Path, metavar="DIR", help=keeps)
-    verify.set_defaults(do=_verify, again="a case begins anew, torn_seal goes on if it was given --out")
-    explain = commands.add_parser("explain", help="say what a scene simulates and what it leaves out")
+    verify.set_defaults(do=_verify, again="the cases start again; torn_seal continues if --out was given")
+    explain = commands.add_parser("explain", help="list the effects that a scene simulates and those that it neglects")
     explain.add_argument("scene", type=Path, metavar="SCENE.toml")
     explain.add_argument("--json", action="store_true")
     explain.add_argument(
@@ -53,44 +53,57 @@ def _parser() -> argparse.ArgumentParser:
         nargs="+",
         default=(),
         metavar="NAME=VALUE",
-        help="constants that scenes do not give, such as oil_viscosity=1e-7 (MPa s); a wrong name lists all",
+        help="constants that no scene gives, such as oil_viscosity=1e-7 (MPa s); a wrong name lists all names",
     )
     explain.set_defaults(do=_explain)
-    cost = commands.add_parser("cost", help="say what accuracy costs: settings, errors, seconds")
+    cost = commands.add_parser("cost", help="compare settings: error and computing time of each")
     cost.add_argument("scene", type=Path, metavar="SCENE.toml")
-    cost.add_argument("--budget", type=float, required=True, metavar="SECONDS", help="wall time of all runs")
+    cost.add_argument("--budget", type=float, required=True, metavar="SECONDS", help="wall time for all runs")
     cost.add_argument(
-        "--out", type=Path, metavar="DIR", help="folder for table, figure and runs; goes on with what is there"
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="folder for table, figure and runs; runs that are already there are used",
     )
     cost.add_argument("--json", action="store_true")
     cost.add_argument("--quiet", action="store_true", help="no progress bar")
-    cost.set_defaults(do=_cost, again="the same command with the same --out goes on")
-    plot = commands.add_parser("plot", help="draw the figures of a run again")
+    cost.set_defaults(do=_cost, again="the same command with the same --out continues")
+    plot = commands.add_parser("plot", help="draw the figures of a finished run")
     plot.add_argument("folder", type=Path, metavar="DIR")
     instead = plot.add_mutually_exclusive_group()
-    instead.add_argument("--against", type=Path, metavar="DIR", help="draw it beside another run of the same outline")
-    instead.add_argument("--animate", action="store_true", help="also draw evolution.gif: outline and pressure moving")
-    which = "draw the loaded section alone, filled by this field, such as 'mean pressure'; a wrong name lists all"
+    instead.add_argument("--against", type=Path, metavar="DIR", help="compare with another run of the same outline")
+    instead.add_argument(
+        "--animate", action="store_true", help="also draw evolution.gif, an animation of outline and pressure"
+    )
+    which = (
+        "draw only the loaded section, coloured by this field, such as 'mean pressure'; a wrong name lists all names"
+    )
     instead.add_argument("--field", metavar="NAME", help=which)
     plot.set_defaults(do=_plot)
-    compare = commands.add_parser("compare", help="lay a measured profile over a run's worn edge; fit the wear rate")
+    compare = commands.add_parser(
+        "compare", help="compare a measured profile with the worn edge of a run; fit the wear rate"
+    )
     compare.add_argument("folder", type=Path, metavar="DIR")
     compare.add_argument("profile", type=Path, metavar="PROFILE.csv", help="columns 'x [mm]' and 'z [mm]', or [µm]")
     compare.add_argument(
-        "--edges", nargs="+", default=(), metavar="NAME", help="measured edges; default: all that wear"
+        "--edges", nargs="+", default=(), metavar="NAME", help="measured edges; default: all worn edges"
     )
     slid = compare.add_mutually_exclusive_group()
-    slid.add_argument("--strokes", type=float, metavar="N", help="strokes of the measured part; default: the run's")
+    slid.add_argument(
+        "--strokes", type=float, metavar="N", help="number of strokes of the measured part; default: that of the run"
+    )
     slid.add_argument("--distance", type=float, metavar="MM", help="sliding distance of the measured part")
-    compare.add_argument("--upside-down", action="store_true", help="the profile's heights point into the material")
-    compare.add_argument("--mirrored", action="store_true", help="the profile runs the other way")
+    compare.add_argument(
+        "--upside-down", action="store_true", help="the heights of the profile point into the material"
+    )
+    compare.add_argument("--mirrored", action="store_true", help="the profile was measured in the opposite direction")
     compare.add_argument("--json", action="store_true")
     compare.set_defaults(do=_compare)
     return parser
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run one command; return 0 if it reached its end, 2 for bad input, 3 when it gave up."""
+    """Run one command; return 0 if it is completed, 2 for bad input, 3 if the computation gave up."""
     logging.basicConfig(level=logging.WARNING, format="ngwear: %(message)s")
     options = _parser().parse_args(arguments)
     try:
@@ -101,21 +114,23 @@ def main(arguments: list[str] | None = None) -> int:
         print(f"ngwear: {error}", file=sys.stderr)
         return BAD_INPUT
     except KeyboardInterrupt:
-        print(f"ngwear: interrupted; {getattr(options, 'again', 'go on with --resume')}", file=sys.stderr)
+        print(f"ngwear: interrupted; {getattr(options, 'again', 'continue with --resume')}", file=sys.stderr)
         return 130
-    except BrokenPipeError:  # who reads the output, such as head, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # or Python's own end would tell it once more
+    except BrokenPipeError:  # the program that reads the output, such as head, has closed it
+        os.dup2(
+            os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno()
+        )  # else Python reports the closed pipe again at its end
         return 141
 
 
 def _run(options: argparse.Namespace) -> int:
     from ngwear.parallel.workers import Worker
 
-    worker = None if options.alone else Worker(*BESIDE)  # loads while this process does
+    worker = None if options.alone else Worker(*SECOND_PROCESS)  # loads its libraries at the same time as this process
     from ngwear.files.result_folder import COMPLETED
     from ngwear.scene.read_scene import read_scene
 
-    scene = read_scene(options.scene)  # a bad scene is told before the solver is loaded
+    scene = read_scene(options.scene)  # errors in the scene are reported before the solver is loaded
     from ngwear.error_estimates.run import run
 
     result = run(
@@ -130,7 +145,7 @@ def _run(options: argparse.Namespace) -> int:
     )
     if result.status != COMPLETED:
         print(f"ngwear: gave up: {result.message}", file=sys.stderr)
-        print(f"ngwear: what was computed until then is in {options.out}", file=sys.stderr)
+        print(f"ngwear: the results up to that stroke are in {options.out}", file=sys.stderr)
         return GAVE_UP
     if options.quiet:
         for warning in result.summary.get("warnings", []):
@@ -149,7 +164,7 @@ def _print_table(values: dict[str, Any]) -> None:
 
 
 def _verify(options: argparse.Namespace) -> int:
-    """Print each check once it is made, so that a kill loses none."""
+    """Print each check as soon as it is done, so that none is lost if the process is stopped."""
     from tqdm import tqdm
 
     from ngwear.verify import checks_of, chosen
@@ -160,8 +175,8 @@ def _verify(options: argparse.Namespace) -> int:
             bar.set_description(name)
             for check in checks_of(name, options.out):
                 passed = passed and check.passed
-                said = opening + json.dumps(check.as_dict(), indent=2) if options.json else str(check)
-                bar.write(said, file=sys.stdout)
+                line = opening + json.dumps(check.as_dict(), indent=2) if options.json else str(check)
+                bar.write(line, file=sys.stdout)
                 sys.stdout.flush()
                 opening = ","
     if options.json:
@@ -179,7 +194,7 @@ def _explain(options: argparse.Namespace) -> int:
     from ngwear.explanation.explain import explain
 
     shown = sys.stderr.isatty()
-    with tqdm(total=100, desc="mounting, for pressures", unit="%", disable=not shown, leave=False) as bar:
+    with tqdm(total=100, desc="mounting for contact pressures", unit="%", disable=not shown, leave=False) as bar:
         found = explain(scene, assumed=assumed, on_mount=lambda done: bar.update(round(100 * done) - bar.n))
     print(found.json if options.json else found)
     return OK
@@ -200,8 +215,10 @@ def _cost(options: argparse.Namespace) -> int:
     print(found.paragraph)
     for choice, written in zip(found.choices, found.written, strict=True):
         if written:
-            told = [f"{k} = {v:.6g}" if isinstance(v, float) else f"{k} = {json.dumps(v)}" for k, v in written.items()]
-            print(f"for {100 * choice.target:g} %: {', '.join(told)}")
+            values = [
+                f"{k} = {v:.6g}" if isinstance(v, float) else f"{k} = {json.dumps(v)}" for k, v in written.items()
+            ]
+            print(f"for {100 * choice.target:g} %: {', '.join(values)}")
     if options.out is not None:
         print(f"table and figure: {options.out}")
     return OK
@@ -215,11 +232,11 @@ def _plot(options: argparse.Namespace) -> int:
     pin = is_pin_run(options.folder)
     if options.field is not None:
         if pin:
-            raise ResultError(f"{options.folder} is a run of a pin: it has no section of a part")
+            raise ResultError(f"{options.folder} is a run of a pin: it has no loaded section")
         print(plot_section(options.folder, field=options.field))
         return OK
     if pin and options.animate:
-        raise ResultError(f"{options.folder} is a run of a pin: its outline does not wear, there is nothing to animate")
+        raise ResultError(f"{options.folder} is a run of a pin: it has no wear to animate")
     draw = plot_pin if pin else plot
     for path in [compare(options.folder, options.against)] if options.against else draw(options.folder):
         print(path)

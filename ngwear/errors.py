@@ -1,31 +1,31 @@
-"""What can go wrong, one class for each kind of remedy, and the checks of what a scene is given."""
+"""Errors of ngwear, one class for each kind of remedy, and the checks of the values in a scene."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from numbers import Integral, Real
 from typing import Any
 
-LARGEST, SMALLEST = 1e15, 1e-30  # of a number in a scene, in any of the units: beyond is a slip of the pen
+LARGEST, SMALLEST = 1e15, 1e-30  # limits of a number in a scene, in any of the units
 
 
 class NgwearError(Exception):
-    """Base of every error that ngwear raises on purpose."""
+    """Base class of all errors of ngwear."""
 
 
 class SceneError(NgwearError, ValueError):
-    """The scene asks for something impossible.
+    """A value in the scene, or an argument, is wrong or contradicts another one.
 
     Parameters
     ----------
     place : str
         Path in the scene, such as ``contact[0].friction``.
     value : object
-        What was found there.
+        The value that was found there.
     remedy : str
-        The allowed range and how to mend it.
+        The allowed range and how to correct the value.
     """
 
     def __init__(self, place: str, value: Any, remedy: str) -> None:
@@ -34,36 +34,37 @@ class SceneError(NgwearError, ValueError):
 
 
 def require(ok: bool, place: str, value: object, remedy: str) -> None:
-    """Raise SceneError for what stands at a place in the scene unless it is all right."""
+    """Raise SceneError with the place, the value and the remedy unless ``ok`` is True."""
     if not ok:
         raise SceneError(place, value, remedy)
 
 
 def check_fields(record: Any, place: str) -> None:
-    """Give the fields of a dataclass the types of their annotations: lists become tuples, whole numbers floats.
+    """Convert the fields of a dataclass to the types of their annotations: lists to tuples, integers to floats.
 
-    Fields of other types than text, names, numbers and switches, and those that have their default, stay as they are;
-    so does nan, which no range of a field's own holds.
+    Only text, names, numbers and booleans are converted. Fields with their default value are not changed. nan is not
+    changed either: the check of the field's own range refuses it.
 
     Raises
     ------
     SceneError
-        For a value of another type, or a number that is not finite.
+        If a value has another type, or a number is not finite.
     """
     for f in fields(record):
         value = getattr(record, f.name)
-        given = f.default is MISSING or value is not f.default
-        if given and not (isinstance(value, float) and math.isnan(value)):
-            object.__setattr__(record, f.name, typed(f"{place}.{f.name}", value, str(f.type)))
+        number = isinstance(value, float)  # an infinite default is another object in another process
+        if value is f.default or (number and (value == f.default or math.isnan(value))):
+            continue
+        object.__setattr__(record, f.name, typed(f"{place}.{f.name}", value, str(f.type)))
 
 
 def typed(place: str, value: Any, kind: str) -> Any:
-    """Return the value as the type that an annotation names, if it is one of those that a scene file can hold.
+    """Return the value converted to the type that an annotation names; types that no scene file holds pass unchanged.
 
     Raises
     ------
     SceneError
-        If it is of another type, or a number that is not finite.
+        If the value has another type, or is a number that is not finite.
     """
     if value is None and kind.endswith("| None"):
         return None
@@ -89,7 +90,7 @@ def typed(place: str, value: Any, kind: str) -> Any:
     if kind in ("float", "float | None"):
         if isinstance(value, bool) or not isinstance(value, Real):
             raise SceneError(place, value, "must be a number")
-        size: Any = abs(value)  # of its own type: a whole number may be too large for a float
+        size: Any = abs(value)  # not yet a float: an integer may be too large for one
         number = float(value) if size < LARGEST else math.inf
         if not math.isfinite(number):
             raise SceneError(place, value, f"must be a finite number (below {LARGEST:g})")
@@ -107,15 +108,15 @@ _SEQUENCES = (
 
 
 class GeometryError(NgwearError):
-    """A contour is not a simple, counter-clockwise, closed curve, or has been worn through."""
+    """An outline is not a simple, counter-clockwise, closed curve, or the part is worn through."""
 
 
 class MeshError(NgwearError):
-    """A mesh does not pass the gates on area, names, smallest angle or Jacobian."""
+    """A mesh fails a check: of its area, edge names, smallest angle or Jacobian."""
 
 
 class ConvergenceError(NgwearError):
-    """No equilibrium was found; ``report`` holds the last iterations."""
+    """No equilibrium was found; ``report`` holds the last Newton iterations."""
 
     def __init__(self, message: str, report: Any = None) -> None:
         self.report = report

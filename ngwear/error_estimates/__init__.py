@@ -1,1 +1,1 @@
-"""Errors of a run: coarser runs beside it, runs to a given error, and what accuracy costs."""
+"""Error estimates: from coarser runs, runs to a given error, and the cost of accuracy."""

@@ -1,30 +1,28 @@
-"""What a run says of its own error: the same scene twice more, two and four times coarser in every setting.
+"""Error of a run by comparison with two coarser runs of the same scene.
 
-A hierarchical estimate of what is read off, mesh and wear steps together: the companions' elements have edges of two
-and four times the length, and their jumps may err by two and four times as much. ``ngwear.results.richardson`` tells
-from all three in which order they converge, and what that leaves in the finest.
+Element edges and error tolerances of the coarser runs are two and four times as large, so that the estimate covers mesh
+and wear steps together. ``ngwear.results.richardson`` computes the order of convergence from the three runs, and the
+error of the finest one.
 
-By where a mesh happens to put its nodes, a peak of pressure or the end of a contact errs by another amount at each
-stroke. So histories are compared, at the same strokes of the last half of the run, and the error is that of their
-mean square.
+Peak pressures and contact ends scatter from stroke to stroke, because they depend on the positions of the nodes. So the
+histories over the last half of the run are compared at the same strokes, by their mean square.
 
-Elements and jumps may err against each other, and what they make up for in one run does not last in the next. What the
-steps tell of the depth themselves is known better; no less than that is stated.
+Errors of mesh and jumps may cancel in one run and not in the next. So the error of the depth is never less than the
+embedded estimate of the wear steps.
 
-With few elements across, all meshes follow a curved outline rather than what they are asked for. Where there is one
-companion, its elements in contact count for as much coarser as they are, not for twice (``coarser_by``).
+With few elements across, the elements on a curved outline are finer than the setting asks for. With a single coarser
+run, its real ratio of element edges in contact is used, instead of two (``coarser_by``).
 
-The estimate cannot see what all three share: the outline's points, the laws and their constants, and steps that the
-scene prescribes (``wear.step`` other than ``"jump"``), and the time step. Three of these are known separately; they are
-stated by their names and added: arms of the memory that are folded away err by a bounded share of the stress,
-prescribed steps by what the embedded estimate says of depth and area, and the time step by what ``time_step`` finds.
+The comparison does not see errors that all runs share: points of the outline, laws and constants, prescribed wear steps
+(``wear.step`` other than ``"jump"``), and the time step. Three of them are estimated separately and added: relaxation
+times left out of the memory (a bound of the stress), prescribed steps (embedded estimate of depth and area), and the
+time step (``ngwear.loop.time_step_error``).
 
-What friction tears out is no matter of convergence: elements of half the side tear nearly twice as much
-(``ngwear.verify.torn_seal``), and coarser ones as little or nothing. So all that is torn, and comes loose by it, counts
-as error of the area lost in all; and of the depth as far as that grows with the area (``growth``). Elements that may be
-lost are laid once and not refined to the ends of the contact, where pressures peak over few of them: finer ones only
-show more of the peak, and what three runs differ by has not begun to fall. No less is stated there than what the finer
-companion differs by.
+Tearing does not converge with the mesh: elements of half the side tear nearly twice as much
+(``ngwear.verify.torn_seal``). So the torn area, and what comes loose by it, is an error of the total lost area, and of
+the depth as far as it grows with that area (``growth``). Elements that may be lost are not refined at the ends of the
+contact, where pressures peak: the differences of the three runs do not yet decrease there. The error of the peak
+pressure is then at least that by the first coarser run alone.
 """
 
 from __future__ import annotations
@@ -52,16 +50,18 @@ from ngwear.results.richardson import relative_errors
 from ngwear.scene.accuracy import LEAST_ACROSS, Tolerances
 from ngwear.scene.scene import Scene
 
+# The ratio of the three runs; and the least that one coarser run counts as, settled on the rod seal with 2.5 and 4
+# elements across, whose contact elements are 1.5 and 1.6 times as long (tests/benchmarks/README.md).
 COARSER, LEAST_COARSER = 2.0, 1.2
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
-POLL = 0.05  # s
+POLL = 0.05  # s: nobody waits longer for nothing, and it takes no time
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
 HERE = DrawnHere()
 Histories = Mapping[str, Mapping[str, list[float]]]  # as of ``quantities_of_interest.reading``
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
-    """The scene with elements of so many times the edge, and jumps that may err by as many times as much."""
+    """The scene with element edges and error tolerances multiplied by a factor; stress_error by its square."""
     accuracy, old = scene.accuracy, scene.accuracy.tolerances
     tolerances = Tolerances(
         stress_error=min(1.0, factor**2 * old.stress_error),
@@ -83,15 +83,14 @@ def scaled(scene: Scene, factor: float) -> Scene:
 
 
 def coarser(scene: Scene, factor: float = COARSER) -> Scene:
-    """A scene's companion; it keeps nothing."""
+    """The scene of a coarser run; it saves nothing."""
     return replace(scaled(scene, factor), save=replace(scene.save, strokes=(), vtk=False))
 
 
 def coarser_by(mine: float, other: float) -> float:
-    """How many times as long a companion's elements in contact are, of both element edges [mm].
+    """Ratio of the element edges in contact of a coarser run and the run, from both edges [mm].
 
-    Twice, unless both follow a curved outline rather than what they are asked for: then they differ by less, and so do
-    their errors.
+    At most 2. It is less if both meshes follow a curved outline: then their errors differ less, too.
     """
     return float(np.clip(other / mine, LEAST_COARSER, COARSER)) if mine > 0 and other > 0 else COARSER
 
@@ -105,18 +104,22 @@ def stated(
     *,
     ratio: float = COARSER,
 ) -> dict[str, float]:
-    """All errors that a run states: each quantity's whole, then by its name what of it is known separately.
+    """Relative errors of a run: the total of each quantity, then its known parts by name.
 
     Parameters
     ----------
     scene : Scene
     embedded : mapping
-        What the wear steps say of themselves, as in the summary of a run alone.
+        Embedded estimates of the wear steps, as in the summary of a run without coarser runs.
     mine, other, coarsest : mapping
-        Readings of the run and its companions; None if the coarsest gave up, or is not needed.
+        Quantities of interest of the run and of the coarser runs; None if the coarsest gave up or is not needed.
     ratio : float
-        How many times as coarse the first companion is (``coarser_by``), where there is no coarsest: three tell by
-        themselves how fast they come nearer.
+        Ratio of element edges of the first coarser run (``coarser_by``); used without the coarsest only.
+
+    Returns
+    -------
+    dict of str to float
+        As ``summary["error estimates"]`` [-].
     """
     levels = relative_errors(mine, other, coarsest, ratio=ratio if coarsest is None else COARSER)
     out = dict(embedded)
@@ -142,14 +145,14 @@ def stated(
 
 
 def excess(errors: Mapping[str, float], asked: Mapping[str, float]) -> float:
-    """The largest of the stated errors over those asked for, by their names [-]; 0 if none of them is stated."""
+    """Largest ratio of an estimated error to the requested one, by name [-]; 0 if none of them is estimated."""
     return max((errors[name] / limit for name, limit in asked.items() if name in errors), default=0.0)
 
 
 def growth(mine: Histories) -> float:
-    """The power of the area lost in all with which the greatest depth grows along the last half of a run, 0 to 1.
+    """Exponent p of ``maximum depth ~ total lost area^p`` over the last half of a run, 0 to 1.
 
-    Contacts that widen as they wear take more area for the same depth: 2/3 of a parabola's, 1/2 of a wedge.
+    It is below 1 for contacts that widen as they wear: 2/3 for a parabola, 1/2 for a wedge.
     """
     (depth,), (area,) = mine[DEPTH].values(), mine[LOST].values()
     if not (depth[-1] > depth[0] > 0 and area[-1] > area[0] > 0):
@@ -169,13 +172,22 @@ def run_stated(
     enough: Mapping[str, float] | None = None,
     worker: Worker | None = None,
 ) -> Result:
-    """Run a scene and, beside it in a second process, its companions; ``summary["error estimates"]`` is from all.
+    """Run a scene and, in a second process, its coarser runs; ``summary["error estimates"]`` uses all of them.
 
-    Parameters and errors as ``run``; ``told`` may add to the summary of a run that reached its end. Where the first
-    companion, taken as of first order, shows no error above those of ``enough``, by their names, there is no coarsest.
-    Companions that give up lose nothing: without the coarsest, errors are taken as of first order; without both, those
-    of the mesh are not known. The summary then warns. They run in ``worker``, which ends with this, or in one that
-    begins here. It draws half of the figures, too, if it has nothing else to do by then.
+    Parameters and errors as ``ngwear.loop.run.run``, and:
+
+    Parameters
+    ----------
+    told : callable or None
+        Called with the summary of a completed run; it may add to it.
+    enough : mapping or None
+        Requested errors by name. The coarsest run is left out if the first one, with first order, shows no larger
+        error.
+    worker : Worker or None
+        The second process, if it has been started already; it ends with the run.
+
+    If the coarsest run gives up, first order is assumed; if the first one gives up, the error of the mesh is not known.
+    The summary then has a warning. The second process also draws half of the figures if it is free.
     """
     companions = _Companions(scene, Path(out), enough, worker)
 
@@ -198,9 +210,9 @@ def run_stated(
 
 
 class _Companions:
-    """Runs in a process of their own, the finer first, each of which leaves its readings in a file.
+    """The coarser runs, in a second process, the finer first; each writes its quantities of interest to a file.
 
-    Those of an earlier process are taken from there. The process draws as well (``ngwear.loop.run.Drawing``).
+    Files of an earlier process are used. The second process also draws figures (``ngwear.loop.run.Drawing``).
     """
 
     def __init__(self, scene: Scene, folder: Path, enough: Mapping[str, float] | None, worker: Worker | None) -> None:
@@ -217,31 +229,31 @@ class _Companions:
             self.worker.end()
 
     def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
-        """Let those run that have not left anything; with laws of a script's own this process does, once it can."""
+        """Start the runs without a file; with laws defined in a script they run later, in this process."""
         if of_modules(self.scene) and any(left_by(*run) is None for run in runs):
             self.worker = self.worker or Worker(__name__)
             self.worker.do(_leave, runs)
             self.begun += runs
 
     def first(self, folder: Path, kept: KeptSections) -> None:
-        """Have the section drawn by the worker once it has run what it was told to; without one, with the rest."""
+        """Let the worker draw the section after its runs; without a worker it is drawn with the other figures."""
         if self.worker is not None:
             self.worker.do(HERE.first, folder, kept)
 
     def rest(self, folder: Path) -> None:
-        """Draw the figures of the run: half of them in the worker, if it is through with the runs."""
+        """Draw the figures of the run, half of them in the worker if its runs are finished."""
         if self.worker is not None and self.worker.alive and all(left_by(*run) is not None for run in self.begun):
             self.worker.do(HERE.rest, folder, (0, 2))
             HERE.rest(folder, (1, 2))
             if self.worker.did():
                 return
-        HERE.rest(folder)  # or fail as it did
+        HERE.rest(folder)  # raises the error that the worker had
 
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
-        """Wait for them, and put the estimates into the summary of the run."""
+        """Wait for the coarser runs, and write the error estimates into the summary."""
         other = self._left(*self.runs[0])
         if "gave up" in other:
-            why = f"the coarser companion run gave up: {other['gave up']}"
+            why = f"the coarser run gave up: {other['gave up']}"
             summary["warnings"].append(f"{why}; the error of the mesh is not known")
             return
         embedded, mine = summary["error estimates"], reading(recorder.rows)
@@ -252,8 +264,8 @@ class _Companions:
             self._begin(self.runs[1:])
             coarsest = self._left(*self.runs[1])
             if "gave up" in coarsest:
-                why = f"the coarsest companion run gave up: {coarsest['gave up']}"
-                summary["warnings"].append(f"{why}; the error of the mesh is taken as of first order")
+                why = f"the coarsest run gave up: {coarsest['gave up']}"
+                summary["warnings"].append(f"{why}; first order is assumed for the error of the mesh")
             known = stated(self.scene, embedded, mine, other["reading"], coarsest.get("reading"), ratio=ratio)
             left.append((coarsest, "coarsest companion"))
         summary["error estimates"] = known
@@ -263,16 +275,16 @@ class _Companions:
                     summary[f"{cost} of the {name}{unit}"] = found[cost]
 
     def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
-        """Wait for what one of them leaves."""
+        """Wait for the file of one of the runs; return its contents."""
         if not of_modules(self.scene):
             _leave([(scene, file)])
         while left_by(scene, file) is None and self.worker is not None and self.worker.alive and not self.worker.idle:
             time.sleep(POLL)
-        return left_by(scene, file) or {"gave up": "it ended without a word"}
+        return left_by(scene, file) or {"gave up": "its process ended without a result"}
 
 
 def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
-    """What a companion has left in its file; None if it has not, or another scene's has."""
+    """Contents of a coarser run's file; None if there is none, or it belongs to another scene."""
     try:
         left = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
@@ -281,14 +293,14 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
 
 
 def left_of(result: Result) -> dict[str, Any]:
-    """What a run that ended leaves as a companion: its readings, its element edge, and what it took."""
+    """Data of a completed run for its use as a coarser run: quantities of interest, element edge, and cost."""
     rows = result.records.rows
     read = {"reading": reading(rows), "element edge [mm]": element_edge(rows)}
     return read | {cost: result.summary[cost + unit] for cost, unit in COSTS}
 
 
 def _leave(runs: list[tuple[Scene, Path]]) -> None:
-    """Run scenes, their readings or failures into their files, each written whole, unless they are there."""
+    """Run the scenes without a file; write the data, or the reason of the failure, to their files."""
     for scene, file in runs:
         if left_by(scene, file) is not None:
             continue
@@ -301,7 +313,7 @@ def _leave(runs: list[tuple[Scene, Path]]) -> None:
 
 
 def leave(scene: Scene, file: Path, left: dict[str, Any]) -> None:
-    """Write what a companion's run has read off and taken into its file, as a whole."""
+    """Write the data of a coarser run to its file, which is replaced as a whole."""
     begun = file.with_name(f".{file.name}.{os.getpid()}")
     begun.write_text(json.dumps({"scene": fingerprint(scene)} | left, indent=2))
     begun.replace(file)

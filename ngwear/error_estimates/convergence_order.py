@@ -1,25 +1,25 @@
-"""How fast an error falls with a knob, and how far off the finest value still is."""
+"""Observed order of convergence in one parameter, and the error of the finest value."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 
-LOWEST, HIGHEST = 0.05, 8.0  # orders that are told from none at all
-RATIO_BITS = 60
+LOWEST, HIGHEST = 0.05, 8.0  # orders that are told from none at all; no knob has a higher one
+RATIO_BITS = 60  # halvings: to rounding
 
 
 def observed_order(values: Sequence[float], results: Sequence[float]) -> float | None:
-    """Order p of ``result = limit + c value^p`` through the three finest; None if they do not tell.
+    """Order p of ``result = limit + c value^p`` through the three finest runs; None if there is none.
 
     Solves ``(a^p - b^p) / (b^p - c^p) = (q_a - q_b) / (q_b - q_c)`` for p; a value may be 0.
 
     Parameters
     ----------
     values : sequence of float
-        Settings of the knob, falling.
+        Values of the parameter, decreasing.
     results : sequence of float
-        What was found with each.
+        Result with each value.
     """
     if len(values) < 3:
         return None
@@ -30,7 +30,7 @@ def observed_order(values: Sequence[float], results: Sequence[float]) -> float |
     wanted = first / second
 
     def excess(p: float) -> float:
-        """Rises with p."""
+        """Residual of the equation above; increases with p."""
         return ((a / b) ** p - 1) / (1 - (c / b) ** p) - wanted
 
     low, high = LOWEST, HIGHEST
@@ -50,16 +50,16 @@ def relative(result: float, reference: float) -> float:
 
 
 def reference_error(values: Sequence[float], results: Sequence[float], *, smooth: bool = True) -> float | None:
-    """Estimate of the finest result's own relative error; None for a single one.
+    """Estimated relative error of the finest result; None for a single result.
 
-    The last change, extrapolated by the observed order; the whole of it where no order shows, none with a value of 0.
+    The last change, extrapolated with the observed order; the whole change without an order; 0 if the value is 0.
 
     Parameters
     ----------
     values, results : sequence of float
-        As of ``observed_order``.
+        As in ``observed_order``.
     smooth : bool
-        Whether there may be an order.
+        Whether the result can have an order of convergence in this parameter.
     """
     if values[-1] == 0:
         return 0.0

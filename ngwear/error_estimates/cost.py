@@ -1,4 +1,4 @@
-"""One verb: what accuracy costs in a scene, and which settings are accurate enough for the least time."""
+"""Cost study: error and computing time of settings of a scene, and the fastest setting for a given error."""
 
 from __future__ import annotations
 
@@ -35,19 +35,19 @@ CSV, JSON, PNG = "cost.csv", "cost.json", "cost.png"
 
 @dataclass(frozen=True)
 class Cost:
-    """What a study has found.
+    """Result of a cost study.
 
     Attributes
     ----------
     scene : str
     budget : float
-        Wall seconds that were given.
+        Wall time that was given for all runs [s].
     study : Study
-        Runs, errors, orders, front.
+        Runs, errors, orders of convergence, Pareto front.
     choices : list of Choice
-        Recommended settings for 5 %, 1 % and 0.1 % of the main quantity.
+        Recommended settings for an error of 5 %, 1 % and 0.1 % of the main quantity.
     written : list of dict or None
-        What to write into the scene's file for each; None where nothing is recommended.
+        Change of the scene file for each of them; None if nothing is recommended.
     """
 
     scene: str
@@ -58,11 +58,11 @@ class Cost:
 
     @property
     def paragraph(self) -> str:
-        """In plain words."""
+        """The results as one paragraph of text."""
         return paragraph(self.scene, self.study, self.choices, self.budget)
 
     def as_dict(self) -> dict[str, Any]:
-        """As in ``cost.json``."""
+        """Contents of ``cost.json``."""
         head = {"scene": self.scene, "budget [s]": self.budget, "in words": self.paragraph}
         found = as_dict(self.study, self.choices)
         for choice, written in zip(found["recommended"], self.written, strict=True):
@@ -70,7 +70,7 @@ class Cost:
         return head | found | {"units": UNITS, "ngwear": VERSION}
 
     def table(self) -> list[dict[str, Any]]:
-        """As in ``cost.csv``: one row a run."""
+        """Rows of ``cost.csv``, one for each run."""
         return table(self.study)
 
 
@@ -82,30 +82,34 @@ def cost(
     progress: bool = False,
     figures: bool = True,
 ) -> Cost:
-    """Run a scene with coarser and finer settings, and say what each setting's accuracy costs.
+    """Run a scene with coarser and finer settings, and compare error and computing time.
 
-    Each run has a process of one thread to itself, one after the other, so that its seconds and its memory are its own.
-    Decisions rest on the recorded seconds of the runs alone: a call with the same folder and budget repeats them and
-    runs nothing, one that was killed goes on, and one with a larger budget goes further. Where there is a sealed fluid,
-    the leak pressure is read as well, as if the scene asked for it. A scene that asks for an error is taken by the
-    preset ``engineering``, whose settings are then varied.
+    Each run has its own process with one thread, one after the other, so that its time and memory are measured alone.
+    The next run depends only on the recorded times of earlier runs: a call with the same folder and budget runs nothing
+    new, a call after an interruption continues, and a call with a larger budget goes further. With a sealed fluid the
+    leak pressure is computed too. If the scene gives ``accuracy.error``, the settings of the preset ``engineering`` are
+    varied.
 
     Parameters
     ----------
     scene : Scene or PinScene
     budget : float
-        Wall seconds of all runs, those found in the folder included.
+        Wall time for all runs, including those found in the folder [s].
     folder : path or None
-        For ``cost.csv``, ``cost.json``, ``cost.png``, and in ``runs`` what each run found.
+        Folder for ``cost.csv``, ``cost.json``, ``cost.png``, and ``runs`` with the result of each run.
     progress : bool
         Show a progress bar.
     figures : bool
         Draw the figure into the folder.
 
+    Returns
+    -------
+    Cost
+
     Raises
     ------
     SceneError
-        If the budget is not positive, or too little for one run.
+        If the budget is not positive, or too small for one run.
     ResultError
         If the folder cannot be used.
     """
@@ -113,7 +117,7 @@ def cost(
         raise SceneError("cost.budget", budget, "must be finite and greater than 0 s")
     if isinstance(scene, Scene) and scene.fluid is not None:
         scene = replace(scene, fluid=replace(scene.fluid, leak_pressure=True))
-    if isinstance(scene, Scene) and scene.accuracy.error is not None:  # the study shows what an error takes
+    if isinstance(scene, Scene) and scene.accuracy.error is not None:  # the study itself finds settings for an error
         scene = replace(scene, accuracy=scene.accuracy.given(Accuracy.engineering()))
     chosen = knobs(scene)
     ladders = tuple(knob.ladder for knob in chosen)
@@ -138,11 +142,11 @@ def _runner(
     begin: Callable[[str], None],
     end: Callable[[float], None],
 ) -> Callable[[Setting, float], Measurement]:
-    """How a setting is measured: by the sweep's processes, or from the folder."""
+    """Function that runs a setting in a process of its own, or reads its result from the folder."""
     if isinstance(scene, Scene):
         scene = replace(
             scene, part=replace(scene.part, outline=replace(scene.part.outline))
-        )  # without what it has worked out: the digest is the data's
+        )  # a copy without cached values, which would change the digest
     ladders = tuple(knob.ladder for knob in chosen)
 
     def run(setting: Setting, left: float) -> Measurement:
@@ -162,7 +166,7 @@ def _runner(
 
 
 def _worth_another(found: Measurement, left: float) -> bool:
-    """Whether a run that was stopped in an earlier call has time enough now."""
+    """Whether a run that was stopped in an earlier call has enough time now."""
     if found.status != STOPPED:
         return False
     return left > (2 * found.wall if math.isnan(found.needed) else max(found.needed, 1.05 * found.wall))
@@ -190,7 +194,7 @@ def _write(out: OutFolder, found: Cost, *, figures: bool) -> None:
 
 
 class _Bar:
-    """Progress on the terminal: seconds of the budget, and the run under way."""
+    """Progress bar: seconds of the budget, and the present run."""
 
     def __init__(self, budget: float, *, shown: bool) -> None:
         self._budget, self._shown = budget, shown
@@ -209,4 +213,4 @@ class _Bar:
         self._bar.set_postfix_str(setting)
 
     def end(self, seconds: float) -> None:
-        self._bar.update(min(seconds, self._budget - self._bar.n))  # beyond its total tqdm forgets the total
+        self._bar.update(min(seconds, self._budget - self._bar.n))  # beyond its total tqdm does not show the total

@@ -1,4 +1,4 @@
-"""Figure of a cost study: error against seconds of every run, and what each knob errs by alone."""
+"""Figure of a cost study: error against computing time of every run, and the error by each parameter alone."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARKERS = ("o", "s", "^", "D", "v", "P")
-LEAST = 1e-5  # errors below, or none at all, are drawn here
+LEAST = 1e-5  # errors below, or none at all, are drawn here: a hundredth of the smallest target
 
 
 def draw_cost(scene: str, study: Study, choices: Sequence[Choice]) -> Figure:
-    """Whole error of each run with the Pareto front, beside the error by each knob alone.
+    """Total error of each run with the Pareto front (left), and the error by each parameter alone (right).
 
     Parameters
     ----------
     scene : str
-        For the title.
+        Name of the scene, for the title.
     study : Study
     choices : sequence of Choice
         The recommended settings are marked.
@@ -61,20 +61,20 @@ def _draw_runs(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
         of_kind = [s for s in shown if kind_of(study, s) == kind]
         colour = "0.35" if number is None else COLOURS[number % len(COLOURS)]
         marker = {"combination": "P", "all": "h"}.get(kind, MARKERS[(number or 0) % len(MARKERS)])
-        label = {"combination": "several knobs changed", "all": "base of the ladders"}.get(kind, f"{kind} changed")
+        label = {"combination": "several parameters changed", "all": "base setting"}.get(kind, f"{kind} changed")
         if of_kind:
             x, y = [shown[s].cpu for s in of_kind], [errors[s] for s in of_kind]
             axis.loglog(x, y, marker, color=colour, ms=7, alpha=0.85, label=label)
     front = study.front()
-    last = max(run.cpu for run in shown.values())  # to the right, nothing is better either
+    last = max(run.cpu for run in shown.values())  # continues the front to the right end
     x, y = [shown[s].cpu for s in front], [errors[s] for s in front]
     axis.step([*x, 1.1 * last], [*y, y[-1]], "k-", where="post", lw=1.3, label="Pareto front")
     if study.own in shown:
         at = shown[study.own].cpu, errors[study.own]
-        axis.plot(*at, "o", ms=15, mfc="none", mec="k", mew=1.2, label="the scene as it stands")
+        axis.plot(*at, "o", ms=15, mfc="none", mec="k", mew=1.2, label="the scene as given")
     _mark_targets(axis, study, choices)
-    axis.set_ylabel("relative error, all knobs together [-]")
-    axis.set_title("every run", fontsize=11)
+    axis.set_ylabel("relative error, all parameters together [-]")
+    axis.set_title("all runs", fontsize=11)
     _legend(axis)
 
 
@@ -102,30 +102,30 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
         rungs = study.rungs(k)
         if len(rungs) < 2:
             continue
-        others = [i for i in rungs if study.rung_error(k, i, study.main)]  # those that differ from the reference
+        others = [i for i in rungs if study.rung_error(k, i, study.main)]  # without those equal to the reference
         x = [rungs[i].cpu for i in others]
         y = [max(study.rung_error(k, i, study.main) or 0.0, LEAST) for i in others]
         order = study.order(k, study.main)
-        told = "" if order is None else f", observed order {order:.1f}"
+        observed = "" if order is None else f", observed order {order:.1f}"
         colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
-        reference = f"against {ladder.labels[max(rungs)]}{told}"
+        reference = f"against {ladder.labels[max(rungs)]}{observed}"
         axis.loglog(x, y, marker + "-", color=colour, ms=6, lw=1.0, label=f"{ladder.name}, {reference}")
         for n, (i, place) in enumerate(zip(others, zip(x, y, strict=True), strict=True)):
             text = ladder.labels[i].removeprefix("wear_error ").removeprefix("stress_error ")
             own = i == ladder.own and rung_of(study.base, k, i) in study.runs
             foot, top = n + 1 < len(y) and y[n] < y[n + 1], n > 0 and y[n - 1] < y[n]
-            below = foot or (i % 2 == 1 and not top)  # neighbours' labels keep clear of each other, and of the line
+            below = foot or (i % 2 == 1 and not top)  # labels must not overlap each other or the line
             axis.annotate(
                 text, place, xytext=(5, -11 if below else 5), textcoords="offset points", fontsize=7.5, color=colour,
                 fontweight="bold" if own else "normal",
             )  # fmt: skip
-    axis.set_ylabel("relative difference from the ladder's finest run [-]")
-    axis.set_title("each knob alone (bold: the scene's value)", fontsize=11)
+    axis.set_ylabel("relative difference from the finest run [-]")
+    axis.set_title("each parameter alone (bold: value of the scene)", fontsize=11)
     _legend(axis)
 
 
 def _legend(axis: Axes) -> None:
-    """Below the points: it would hide the smallest errors."""
+    """Put the legend below the points, where it hides none."""
     axis.margins(0.13)
     low, high = axis.get_ylim()
     axis.set_ylim(low * (low / high) ** 0.4, high)

@@ -1,4 +1,4 @@
-"""One run of a study in a process of its own: what users read, and what it took."""
+"""One run of a cost study in its own process: its results, time and memory."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from ngwear.scene.scene import Scene
 
 DEPTH, PEAK = "maximum depth [mm]", "peak pressure [MPa]"
 NO_TIME = "no time was left"
-GRACE = 60.0  # s, for one call of a compiled library
+GRACE = 60.0  # s, for one call of a compiled library: more than a factorisation takes
 
 
 class OutOfTimeError(Exception):
-    """A run has used up the time that was left."""
+    """A run has used all of its time."""
 
 
 @dataclass
 class _Clock:
-    """When this process's run was sent off, by the system's clock, and whether its time is over."""
+    """System time at which the run of this process was submitted, and whether its time is over."""
 
     sent: float = math.nan
     over: bool = False
@@ -45,12 +45,12 @@ class _Clock:
             raise OutOfTimeError
 
     def ring(self) -> None:
-        """Interrupt the main thread as the keyboard does, which every platform knows how to."""
+        """Interrupt the main thread as the keyboard does; this works on every platform."""
         self.over = True
         _thread.interrupt_main()
 
     def stop(self, _: int, __: FrameType | None) -> None:
-        """What an interruption does."""
+        """Signal handler of an interruption."""
         if math.isnan(self.sent):
             return  # the run has ended in the meantime
         self.check()
@@ -61,9 +61,9 @@ _clock = _Clock()
 
 
 class Limited(Executor):
-    """Another executor whose calls are stopped after so many wall seconds, those of its process' start included.
+    """Wrapper of an executor that stops calls after a wall time [s], including the start of the process.
 
-    A call that takes no notice for ``grace`` more seconds, inside of a compiled library, is ended with its process.
+    A call that does not stop within ``grace`` more seconds, in a compiled library, is ended with its process.
     """
 
     def __init__(self, executor: Executor, seconds: float, *, grace: float = GRACE) -> None:
@@ -93,7 +93,7 @@ def _timed(sent: float, seconds: float, grace: float, call: Callable[[], Any]) -
     alarm.daemon = True
     before = signal.signal(signal.SIGINT, _clock.stop)
     with open(os.devnull, "w", encoding="ascii") as nowhere:
-        faulthandler.dump_traceback_later(left + grace, exit=True, file=nowhere)  # whatever the main thread is at
+        faulthandler.dump_traceback_later(left + grace, exit=True, file=nowhere)  # ends the process in any case
         try:
             try:
                 alarm.start()
@@ -101,19 +101,19 @@ def _timed(sent: float, seconds: float, grace: float, call: Callable[[], Any]) -
             finally:
                 alarm.cancel()
                 alarm.join()
-        except OutOfTimeError:  # before or after all that ``measure`` watches over: a budget may end at once
+        except OutOfTimeError:  # outside of ``measure``, if there is no time at all
             cpu, wall = time.process_time(), time.time() - sent
             return Measurement(status=STOPPED, message=NO_TIME, cpu=cpu, wall=wall, memory=peak_memory())
         finally:
             _clock.sent = math.nan
             faulthandler.cancel_dump_traceback_later()
-            signal.signal(signal.SIGINT, before)  # which first lets an interruption that is still to come have its way
+            signal.signal(signal.SIGINT, before)  # a pending interruption is handled before
             _clock.over = False
 
 
 @dataclass(frozen=True)
 class Point:
-    """A scene to be run, for the first time or once more since it was stopped."""
+    """A scene to be run; ``attempt`` counts repetitions after it was stopped."""
 
     scene: Scene | PinScene
     attempt: int = 0
@@ -121,22 +121,22 @@ class Point:
 
 @dataclass
 class _Progress:
-    """Fraction of the run that is done, and when it was."""
+    """Completed fraction of the run."""
 
     begun: float = 0.0
     done: float = 0.0
     last: float = 0.0
 
     def needed(self, total: float) -> float:
-        """About how many seconds all would take; nan if that cannot be told."""
+        """Estimated time of the whole run [s]; nan if it is not known."""
         return self.begun + (total - self.begun) / self.done if self.done > 0 else math.nan
 
 
 def measure(point: Point) -> Measurement:
-    """Run a scene and pick what users read; a run that gives up, or is stopped, comes back as such.
+    """Run a scene and return its main results; also for a run that gives up or is stopped.
 
-    The alarm may go off inside of a compiled library, which turns it into an error of its own, or drops it: so the
-    clock tells whether a run was stopped, not the error that it ended with.
+    A compiled library may turn the interruption into another error, or ignore it: so the clock decides whether a run
+    was stopped, not the error with which it ended.
     """
     progress = _Progress()
     sent = time.time() if math.isnan(_clock.sent) else _clock.sent
@@ -145,7 +145,7 @@ def measure(point: Point) -> Measurement:
         found = _slide(scene, progress, sent) if isinstance(scene, PinScene) else _wear(scene, progress, sent)
     except NgwearError as error:
         found = Measurement(status=GAVE_UP, message=str(error))
-    except Exception as error:  # a mesher or a solver outside of ngwear: kept as well, or each call would try again
+    except Exception as error:  # errors of mesher or solver are recorded too; else each call would try again
         found = Measurement(status=GAVE_UP, message=f"{type(error).__name__}: {error}")
     if _clock.over and found.status == GAVE_UP:
         found = Measurement(status=STOPPED, message=NO_TIME, needed=progress.needed(time.time() - sent))
@@ -169,15 +169,15 @@ def _wear(scene: Scene, progress: _Progress, sent: float) -> Measurement:
 
 
 def wear_values(scene: Scene, summary: dict[str, Any], rows: list[dict[str, Any]]) -> dict[str, float]:
-    """What users read of a run: worn depth and amount, and the highest of each kind of stroke at the end.
+    """Main results of a run: maximum depth, worn amount, and the largest values of the last cycle.
 
     Parameters
     ----------
     scene : Scene
     summary : dict
-        As in ``summary.json``.
+        Contents of ``summary.json``.
     rows : list of dict
-        As in ``series.csv``.
+        Rows of ``series.csv``.
     """
     last = rows[-len(scene.program.cycle) :]
     amount = "worn volume [mm^3]" if scene.axisymmetric else "worn area [mm^2]"

@@ -1,4 +1,4 @@
-"""What a study has found so far: its runs, their errors, and what other settings would take."""
+"""State of a cost study: its runs, their errors, and predicted error and time of other settings."""
 
 from __future__ import annotations
 
@@ -9,29 +9,29 @@ from ngwear.error_estimates.convergence_order import observed_order, reference_e
 from ngwear.error_estimates.ladder import Ladder, Measurement, Setting, rung_of
 from ngwear.error_estimates.pareto_front import pareto_front, power_law, product_seconds
 
-TARGETS = (0.05, 0.01, 0.001)
-SETTLED = 0.1 * min(TARGETS)  # error of the finest rung below which a finer one has nothing to tell
+TARGETS = (0.05, 0.01, 0.001)  # a look, a decision, a reference
+SETTLED = 0.1 * min(TARGETS)  # error of the finest rung below which a finer one changes no choice
 
 
 @dataclass
 class Study:
-    """Ladders over a scene's knobs, climbed one at a time from a common base.
+    """Runs in which one parameter at a time is varied from a common base setting.
 
-    The first ladder is that of the mesh; the others are climbed on the mesh of ``base``. The error of a setting is the
-    sum of what each knob's value errs by on its own ladder, against that ladder's finest run, and of what that run
-    still errs by itself: errors of opposite sign are not set off against each other.
+    Each parameter has a ladder: its values from coarse to fine. The first ladder is that of the mesh; the others are
+    run on the mesh of ``base``. The error of a setting is the sum over its parameters of the difference from the finest
+    run of the ladder and of the error of that finest run. Errors of opposite sign do not cancel in this sum.
 
     Attributes
     ----------
     ladders : tuple of Ladder
     main : str
-        The quantity that the targets are about.
+        The quantity to which the target errors belong.
     base : tuple of int
-        Rung of each ladder from which the others are climbed.
+        Base setting: level on each ladder.
     runs : dict
-        Measurement of each setting, in the order in which they were run.
+        Measurement of each setting, in the order of the runs.
     left_out : dict
-        Seconds of wall time that settings would take for which there was none left; nan if not known.
+        Predicted wall time of settings that were not run for lack of time [s]; nan if not known.
     """
 
     ladders: tuple[Ladder, ...]
@@ -47,17 +47,17 @@ class Study:
 
     @property
     def spent(self) -> float:
-        """Wall seconds of all runs, those of earlier calls included."""
+        """Wall time of all runs, including earlier calls [s]."""
         return sum(run.wall for run in self.runs.values())
 
     @property
     def quantities(self) -> tuple[str, ...]:
-        """Names of what the runs found, the main one first."""
+        """Names of the quantities, the main one first."""
         names = dict.fromkeys([self.main] + [name for run in self.runs.values() if run.ok for name in run.values])
         return tuple(names)
 
     def rungs(self, k: int) -> dict[int, Measurement]:
-        """Completed runs of a ladder, coarse to fine."""
+        """Completed runs of a ladder by level, coarse to fine."""
         found = {i: self.runs.get(rung_of(self.base, k, i)) for i in range(len(self.ladders[k].values))}
         return {i: run for i, run in found.items() if run is not None and run.ok}
 
@@ -66,27 +66,27 @@ class Study:
         return [self.ladders[k].values[i] for i in rungs], [run.values[quantity] for run in rungs.values()]
 
     def order(self, k: int, quantity: str) -> float | None:
-        """Observed order of a quantity in a knob; None if three runs do not tell one."""
+        """Observed order of convergence of a quantity in a parameter; None if there is none."""
         return observed_order(*self._series(k, quantity)) if self.ladders[k].smooth else None
 
     def own_error(self, k: int, quantity: str) -> float:
-        """Estimated relative error of a ladder's finest run; infinite with fewer than two."""
+        """Estimated relative error of a ladder's finest run; infinite with fewer than two runs."""
         values, results = self._series(k, quantity)
         found = reference_error(values, results, smooth=self.ladders[k].smooth) if values else None
         return math.inf if found is None else self.ladders[k].remaining * found
 
     def rung_error(self, k: int, rung: int, quantity: str) -> float | None:
-        """Relative difference from the ladder's finest run; None if the rung has not been run."""
+        """Relative difference from the ladder's finest run; None if the level has not been run."""
         rungs = self.rungs(k)
         if rung not in rungs:
             return None
         return relative(rungs[rung].values[quantity], rungs[max(rungs)].values[quantity])
 
     def part(self, k: int, rung: int, quantity: str) -> float:
-        """What a knob's value adds to the error; infinite if that is not known.
+        """Contribution of a parameter's value to the error; infinite if it is not known.
 
-        It counts as no more accurate than any finer one: a coarse rung that is near the reference is so by chance. A
-        rung finer than all that have been run errs as the finest.
+        It is at least that of every finer level, because a coarse level may be close to the reference by chance. A
+        level finer than all runs has the error of the finest run.
         """
         rungs = self.rungs(k)
         if not rungs or (rung < max(rungs) and rung not in rungs):
@@ -95,16 +95,16 @@ class Study:
         return max(found, default=0.0) + self.own_error(k, quantity)
 
     def predicted_error(self, setting: Setting, quantity: str) -> float:
-        """Relative error of a setting as the sum of its knobs' parts; infinite if one is not known."""
+        """Relative error of a setting as the sum over its parameters; infinite if one is not known."""
         return sum(self.part(k, i, quantity) for k, i in enumerate(setting))
 
     @property
     def finest(self) -> Setting:
-        """Each ladder's finest completed rung together; of the base where a ladder has none."""
+        """Setting with the finest completed level of each ladder; that of the base if a ladder has none."""
         return tuple(max(self.rungs(k), default=self.base[k]) for k in range(len(self.ladders)))
 
     def added(self, quantity: str) -> float:
-        """The base's value with the correction by each ladder's finest run; nan without the base."""
+        """Value of the base run plus the corrections by the finest run of each ladder; nan without the base run."""
         base = self.runs.get(self.base)
         if base is None or not base.ok:
             return math.nan
@@ -112,19 +112,19 @@ class Study:
         return value + sum(list(self.rungs(k).values())[-1].values[quantity] - value for k in range(len(self.ladders)))
 
     def best(self, quantity: str) -> float:
-        """The value of the run with all knobs at their finest; without it what the ladders add up to."""
+        """Value of the run at ``finest``; without that run, ``added``."""
         run = self.runs.get(self.finest)
         return run.values[quantity] if run is not None and run.ok else self.added(quantity)
 
     def error(self, setting: Setting, quantity: str) -> float:
-        """Relative error of a run: as predicted, or its difference from ``best`` if that is more."""
+        """Relative error of a run: the larger of the predicted one and the difference from ``best``."""
         predicted, best = self.predicted_error(setting, quantity), self.best(quantity)
         if math.isnan(best):
             return predicted
         return max(predicted, relative(self.runs[setting].values[quantity], best))
 
     def seconds(self, setting: Setting, *, wall: bool = False) -> float:
-        """Seconds that a combination of completed rungs takes: CPU, or wall; as measured if it has been run."""
+        """CPU or wall time of a setting [s]: measured, or predicted from the completed levels."""
         run = self.runs.get(setting)
         if run is not None and run.ok:
             return run.wall if wall else run.cpu
@@ -134,7 +134,7 @@ class Study:
         return product_seconds(self.base, each, setting)
 
     def next_seconds(self, k: int, rung: int) -> float:
-        """Wall seconds of a rung that has not been run, by those of the ladder; nan if there are none."""
+        """Predicted wall time of a level that has not been run [s]; nan without any run of the ladder."""
         ladder, rungs = self.ladders[k], self.rungs(k)
         base = self.runs.get(self.base)
         if not rungs:
@@ -149,9 +149,9 @@ class Study:
         return power_law(values, walls, ladder.values[rung], ladder.growth, most)
 
     def settled(self, k: int) -> bool:
-        """Whether a finer rung has nothing to tell: the finest, beyond the scene's, errs by next to nothing.
+        """Whether no finer level is needed: the finest run, finer than the scene, has a negligible error.
 
-        By its own error where an order shows, else by the last two changes of the main quantity.
+        By its estimated error if there is an order, else by the last two changes of the main quantity.
         """
         rungs = list(self.rungs(k).items())
         if len(rungs) < 3 or rungs[-1][0] <= self.ladders[k].own:
@@ -162,7 +162,7 @@ class Study:
         return max(relative(a, results[2]) for a in results[:2]) < SETTLED
 
     def front(self) -> list[Setting]:
-        """Completed runs that no other beats in CPU seconds and error of the main quantity, the fastest first."""
+        """Pareto front: runs that no other run beats in CPU time and error of the main quantity, the fastest first."""
         known = [s for s, run in self.runs.items() if run.ok and math.isfinite(self.error(s, self.main))]
         points = [(self.runs[s].cpu, self.error(s, self.main)) for s in known]
         return [known[i] for i in pareto_front(points)]

@@ -1,4 +1,4 @@
-"""A study as a table, one row a run, and as JSON."""
+"""A cost study as a table, one row for each run, and as JSON."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from ngwear.error_estimates.settings_search import Choice
 
 
 def finite(number: float | None) -> float | None:
-    """None for what JSON has no number for."""
+    """The number, or None if it is nan or infinite, which JSON does not have."""
     return None if number is None or not math.isfinite(number) else number
 
 
 def kind_of(study: Study, setting: Setting) -> str:
-    """The ladder that a run belongs to; the base belongs to all."""
+    """Name of the ladder to which a run belongs; "all" for the base, "combination" for others."""
     changed = [k for k, i in enumerate(setting) if i != study.base[k]]
     if not changed:
         return "all"
@@ -26,7 +26,7 @@ def kind_of(study: Study, setting: Setting) -> str:
 
 
 def table(study: Study) -> list[dict[str, Any]]:
-    """One row a run, in the order in which they were made; columns named ``"quantity [unit]"``."""
+    """One row for each run, in their order; columns are named ``"quantity [unit]"``."""
     front, rows = set(study.front()), []
     for setting, run in study.runs.items():
         row: dict[str, Any] = {"ladder [-]": kind_of(study, setting)}
@@ -62,7 +62,7 @@ def _on_ladder(study: Study, setting: Setting, quantity: str) -> float | str:
 
 
 def as_dict(study: Study, choices: Sequence[Choice]) -> dict[str, Any]:
-    """Ladders with errors and orders, front, recommendations, and what was left out."""
+    """Ladders with errors and orders, Pareto front, recommendations, and settings not run; for ``cost.json``."""
     return {
         "main quantity": study.main,
         "spent [s]": round(study.spent, 1),
@@ -117,7 +117,7 @@ def _choice(study: Study, choice: Choice) -> dict[str, Any]:
         "target [-]": choice.target,
         "setting": told(study.ladders, choice.setting),
         "values": {ladder.column: ladder.values[i] for ladder, i in zip(study.ladders, choice.setting, strict=True)},
-        "answer": "measured" if choice.measured else "put together from the ladders, not run",
+        "answer": "measured" if choice.measured else "predicted from the ladders, not run",
         "CPU time [s]": round(study.seconds(choice.setting), 3),
         "errors [-]": {quantity: finite(error(choice.setting, quantity)) for quantity in study.quantities},
     }

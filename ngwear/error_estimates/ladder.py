@@ -1,4 +1,4 @@
-"""Ladders of settings, and what a run on one of their rungs found."""
+"""Ladder: the values of one parameter from coarse to fine; and the measurement of a run."""
 
 from __future__ import annotations
 
@@ -9,33 +9,33 @@ from dataclasses import dataclass, field
 from ngwear.files.result_folder import COMPLETED
 
 STOPPED = "stopped"
-Setting = tuple[int, ...]  # a rung of each ladder
+Setting = tuple[int, ...]  # level on each ladder
 
 
 @dataclass(frozen=True, kw_only=True)
 class Ladder:
-    """One knob that trades time for error, from coarse to fine.
+    """Values of one parameter that trades computing time for error, from coarse to fine.
 
     Parameters
     ----------
     name : str
-        In words, such as ``"element edge"``.
+        Name, such as ``"element edge"``.
     column : str
         Name and unit, such as ``"element edge [mm]"``.
     values : tuple of float
-        Falling. 0 stands for a setting without this error at all, such as each stroke solved.
+        Decreasing. 0 means without this error, such as each stroke solved.
     labels : tuple of str
-        Each value in words, such as ``"0.05 mm"``.
+        Each value as text, such as ``"0.05 mm"``.
     own : int
-        The scene's rung.
+        Level of the scene.
     growth : float
-        A first guess of p in ``seconds ~ value^-p``, until there are measured ones.
+        First guess of p in ``seconds ~ value^-p``, until it is measured.
     most_solves : int
-        Solves that a value of 0 takes; 0 if it changes nothing about their number.
+        Number of solves with a value of 0; 0 if the parameter does not change it.
     smooth : bool
-        Whether an error that falls by a power of the value can be expected.
+        Whether the error is expected to be a power of the value.
     remaining : float
-        What the finest run errs by over its difference from the one before, where no order shows.
+        Error of the finest run over its difference from the one before, if no order is observed [-].
     """
 
     name: str
@@ -51,7 +51,7 @@ class Ladder:
 
 @dataclass(frozen=True, kw_only=True)
 class Measurement:
-    """What one run found and took.
+    """Results, time and memory of one run.
 
     Attributes
     ----------
@@ -60,14 +60,14 @@ class Measurement:
     message : str
         Why it gave up or was stopped.
     values : mapping of str to float
-        What users read, by name and unit.
+        Main results, by name and unit.
     cpu, wall : float
-        Seconds of the process from its start.
+        CPU and wall time of the process from its start [s].
     memory : float
-        Its peak [MB].
+        Peak memory of the process [MB].
     solves : int
     needed : float
-        About how many seconds it would have taken, if it was stopped; nan if not even that is known.
+        Estimated wall time of the whole run if it was stopped [s]; nan if not known.
     """
 
     status: str
@@ -81,15 +81,15 @@ class Measurement:
 
     @property
     def ok(self) -> bool:
-        """Whether the run reached its end."""
+        """Whether the run was completed."""
         return self.status == COMPLETED
 
 
 def rung_of(base: Setting, ladder: int, rung: int) -> Setting:
-    """The base with another rung of one ladder."""
+    """The base setting with another level on one ladder."""
     return (*base[:ladder], rung, *base[ladder + 1 :])
 
 
 def told(ladders: tuple[Ladder, ...], setting: Setting) -> dict[str, str]:
-    """A setting in words, by the ladders' names."""
+    """Labels of a setting by the names of the ladders."""
     return {ladder.name: ladder.labels[i] for ladder, i in zip(ladders, setting, strict=True)}

@@ -1,4 +1,4 @@
-"""Which runs no other run beats, and which settings are accurate enough for the least time."""
+"""Pareto front of runs, and the fastest setting for a target error."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ngwear.error_estimates.ladder import Setting
 
-ALIKE = 0.05  # relative difference of seconds that a second measurement would not repeat
+ALIKE = 0.05  # relative difference of seconds that a second measurement would not repeat, on a shared machine
 
 
 def pareto_front(points: Iterable[tuple[float, float]]) -> list[int]:
-    """Indices of the points (seconds, error) that none beats in both, by rising seconds."""
+    """Indices of the points (seconds, error) that no other point beats in both, by increasing seconds."""
     points = list(points)
     front: list[int] = []
     for i in sorted(range(len(points)), key=lambda i: points[i]):
@@ -29,22 +29,22 @@ def cheapest(
     unfit: Iterable[Setting] = (),
     own: Setting = (),
 ) -> Setting | None:
-    """The combination of rungs of least seconds whose error is at most the target; None if there is none.
+    """The fastest combination of levels whose error is at most the target; None if there is none.
 
-    Among those that take hardly longer than the least, it is the one that changes the fewest knobs of ``own``, and of
-    these the most accurate.
+    Among combinations of nearly the same time, it is the one with the fewest changes from ``own``, then the most
+    accurate one.
 
     Parameters
     ----------
     target : float
     rungs : sequence of iterable of int
-        Of each ladder, those that are known.
+        Known levels of each ladder.
     error, seconds : callable
-        Of a setting, as predicted.
+        Predicted error and time of a setting.
     unfit : iterable of Setting
-        Those that measurement has shown not to be accurate enough.
+        Settings whose measured error is too large.
     own : Setting
-        The scene's.
+        Setting of the scene.
     """
     refused = set(unfit)
     fit = [s for s in itertools.product(*rungs) if s not in refused and error(s) <= target]
@@ -54,7 +54,7 @@ def cheapest(
 
 
 def product_seconds(base: Setting, rung_seconds: Sequence[Mapping[int, float]], setting: Setting) -> float:
-    """Seconds of a combination: each ladder changes those of the base by the factor measured on it."""
+    """Predicted seconds of a setting: those of the base times the factor measured on each ladder."""
     out = rung_seconds[0][base[0]]
     for k, rung in enumerate(setting):
         out *= rung_seconds[k][rung] / rung_seconds[k][base[k]]
@@ -64,10 +64,10 @@ def product_seconds(base: Setting, rung_seconds: Sequence[Mapping[int, float]], 
 def power_law(
     values: Sequence[float], seconds: Sequence[float], wanted: float, growth: float, highest: float = math.inf
 ) -> float:
-    """Seconds of the next, finer value after the measured ones: ``t ~ value^-p``.
+    """Predicted seconds of the next finer value: ``t ~ value^-p``.
 
-    p is that of the two finest, between the first guess ``growth`` and 3; the guess for a single one. Fixed costs make
-    coarse runs alike, so that less than the guess says nothing of finer ones.
+    p is measured from the two finest runs, but at least ``growth`` and at most 3; ``growth`` with a single run. Fixed
+    costs make p of coarse runs too small for finer ones.
     """
     p = growth
     if len(values) > 1 and values[-2] > values[-1] > 0:

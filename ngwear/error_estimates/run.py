@@ -1,4 +1,4 @@
-"""One verb: run a scene of any kind to its end, and state the errors of what it finds."""
+"""Run a scene of any kind, with estimates of the errors of its results."""
 
 from __future__ import annotations
 
@@ -52,29 +52,30 @@ def run(
     throw: bool = True,
     worker: Worker | None = None,
 ) -> Result | PinResult:
-    """Run a scene to its end; the result states the errors of what it found.
+    """Run a scene to its last stroke; the result contains estimates of its errors.
 
-    Coarser runs of the same scene beside it, in a second process, tell the errors (``error_estimates.coarser_runs``).
+    The errors come from coarser runs of the same scene in a second process (``error_estimates.coarser_runs``).
 
     Parameters
     ----------
     scene : Scene or PinScene
     out : path or None
-        Folder for ``series.csv``, ``result.h5``, ``summary.json``, the checkpoint and the figures; without one, nothing
-        is kept beyond the result.
+        Folder for ``series.csv``, ``result.h5``, ``summary.json``, the checkpoint and the figures; without one, only
+        the result object remains.
     accuracy : str, float, Accuracy or None
-        Instead of the scene's: a preset (``"draft"``, ``"engineering"``, ``"reference"``), or the relative error of the
-        greatest depth that the run shall state, such as 0.01.
+        Replaces the accuracy of the scene: a preset (``"draft"``, ``"engineering"``, ``"reference"``), or the allowed
+        relative error of the maximum depth, such as 0.01.
     alone : bool
-        No coarser runs: the error of the mesh is not known.
+        Without coarser runs: the error of the mesh is not estimated.
     resume : bool
-        Go on with the run in the folder.
+        Continue the run in the folder.
     progress : bool
         Show a progress bar.
     throw : bool
-        Raise when the run gives up; else return a result that says why. What it had is saved either way.
+        Raise an error when the run gives up; else return a result with the reason. Results so far are saved in both
+        cases.
     worker : Worker or None
-        The second process, if one has begun already; it ends with the run.
+        The second process, if it has been started already; it ends with the run.
 
     Returns
     -------
@@ -83,7 +84,7 @@ def run(
     Raises
     ------
     SceneError
-        For an accuracy that does not go with the scene.
+        If the accuracy does not fit the scene.
     ResultError
         If the folder cannot be used.
     ConvergenceError, GeometryError, MeshError
@@ -91,7 +92,7 @@ def run(
     """
     scene = with_accuracy(scene, accuracy)
     if resume and out is None:
-        raise SceneError("run.resume", resume, "needs the folder of the earlier run: give out")
+        raise SceneError("run.resume", resume, "needs the folder of the earlier run: give out=...")
     with nullcontext(out) if out is not None else tempfile.TemporaryDirectory(prefix="ngwear ") as folder:
         path, keeps = Path(str(folder)), out is not None
         if isinstance(scene, PinScene):
@@ -103,7 +104,7 @@ def run(
             from ngwear.loop.run import run as run_alone
 
             if scene.accuracy.error is not None:
-                raise SceneError("run.alone", alone, "an accuracy.error is met by several runs: leave either out")
+                raise SceneError("run.alone", alone, "accuracy.error needs several runs: give only one of them")
             where = path if keeps else None
             return run_alone(scene, out=where, resume=resume, progress=progress, throw=throw, figures=keeps)
         if scene.accuracy.error is not None:
@@ -122,17 +123,17 @@ def run(
 
 
 def with_accuracy(scene: Scene | PinScene, accuracy: str | float | Accuracy | None) -> Scene | PinScene:
-    """The scene by a preset, to an error, or with other settings of accuracy; as it is for None.
+    """The scene with a preset, an allowed error, or another Accuracy; unchanged for None.
 
     Raises
     ------
     SceneError
-        For what is none of these, or a pin, whose accuracy is that of its mesh.
+        If the accuracy is none of these, or for a pin: its mesh is set in the scene.
     """
     if accuracy is None:
         return scene
     if isinstance(scene, PinScene):
-        raise SceneError("accuracy", accuracy, "is for wear: the meshes of a pin are in its scene's [accuracy]")
+        raise SceneError("accuracy", accuracy, "cannot be given for a pin: set its mesh in [accuracy] of the scene")
     if isinstance(accuracy, Accuracy):
         return replace(scene, accuracy=accuracy)
     try:
@@ -145,12 +146,12 @@ def with_accuracy(scene: Scene | PinScene, accuracy: str | float | Accuracy | No
 
 
 def read_result(folder: Path | str) -> Result | PinResult:
-    """What a run, of any kind, has left in its folder.
+    """Read the result of a run of any kind from its folder.
 
     Raises
     ------
     ResultError
-        If there is no run, or its files are damaged.
+        If the folder holds no run, or its files are damaged.
     """
     from ngwear.plots.pin import is_pin_run
 

@@ -1,13 +1,13 @@
-"""A run that states an error no larger than was asked for: finer and finer levels, the last of which is kept.
+"""Run a scene to a requested error: on finer and finer levels, until the estimated error is small enough.
 
-A level has two or four times as many elements across the contacts as the one before, and tolerances of stresses and
-wear that go along (``Accuracy``). Within it the run chooses the patch of each zone of a contact with each new mesh, the
-elements elsewhere by their stresses, and the jumps by what the wear steps err by. Levels are the companions of finer
-ones (``ngwear.error_estimates.coarser_runs``), so that the first alone needs some of its own; one, if that shows an
-error small enough. Where rubber has memory and its time step errs by more than half of what was asked for, the next
-level divides strokes into more parts, and needs companions of its own.
+A level has two or four times as many elements across the contacts as the one before, with smaller tolerances of stress
+and wear (``Accuracy``). In a level the mesh is adapted to contacts and stresses, and the cycle jumps to the error of
+the wear steps. Levels serve as the coarser runs of finer levels (``ngwear.error_estimates.coarser_runs``), so that only
+the first level needs additional runs; one, if that shows a small enough error. If the time step of rubber with memory
+has more than half of the requested error, the next level divides strokes into more parts and needs its own coarser
+runs.
 
-The error meant is that of the greatest depth; others are stated beside it.
+The requested error is that of the maximum depth, and optionally of the peak pressure; others are only estimated.
 """
 
 from __future__ import annotations
@@ -41,20 +41,22 @@ from ngwear.scene.accuracy import MOST_ACROSS
 from ngwear.scene.scene import Scene
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
+# Settled on the rod seal, which errs by 0.43 % of its depth on 4, 1.3 % on 2.5 (adaptive_against_fixed.py), and states
+# 1.7 % of its peak on 6. What is stated decides; a level too coarse costs another one.
 FIRST, AT = 4.0, 0.01  # elements across of the first level when so much error of the depth is asked for
 FIRST_PEAK, AT_PEAK = 6.0, 0.1  # when so much of the peak pressure is
-COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0
+COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0  # below, coarser runs hardly differ; above, a first level is dear
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
-HALVINGS, MOST_PARTS = 2, 16  # of the time step at once; parts of a stroke
+HALVINGS, MOST_PARTS = 2, 16  # of the time step at once; parts of a stroke, each with a solve
 ACROSS, PARTS, CPU = "elements across [-]", "parts of a stroke [-]", "CPU time [s]"
 Level = tuple[float, int]  # elements across, parts of a stroke
 BY_TIME = f"{DEPTH[:-4]} {BY_TIME_STEP}"
 
 
 def first_across(error: float, peak_error: float | None = None) -> float:
-    """Elements across the contacts to begin with: 4 for 1 % of depth, 6 for 10 % of peak pressure, from 2.5 to 32.
+    """Elements across of the first level: 4 for 1 % error of depth, 6 for 10 % of peak pressure; from 2.5 to 32.
 
-    Twice as many for half of the error.
+    Half of the error needs twice as many.
     """
     across = FIRST * 2.0 ** math.ceil(math.log2(AT / error) - 1e-9)
     if peak_error is not None:
@@ -63,9 +65,9 @@ def first_across(error: float, peak_error: float | None = None) -> float:
 
 
 def next_across(across: float, stated: float | None, error: float) -> float | None:
-    """Elements across of the next level; None if a level is accurate enough, or there is no finer one.
+    """Elements across of the next level; None if this level is accurate enough, or there is no finer one.
 
-    Errors are taken as of first order, and at most two levels are taken at once, one where the error is not known.
+    First order is assumed. The next level has at most four times as many elements, and twice if the error is not known.
     """
     if stated is not None and stated <= error:
         return None
@@ -76,7 +78,7 @@ def next_across(across: float, stated: float | None, error: float) -> float | No
 
 
 def next_parts(parts: int, by_time_step: float, error: float) -> int:
-    """Parts of a stroke for the next level: as many as let the time step err by half of the error, of first order."""
+    """Parts of a stroke of the next level, so that the time step has half of the error; first order is assumed."""
     share = 2 * by_time_step / error
     steps = min(HALVINGS, math.ceil(math.log2(share) - 1e-9)) if share > 1 else 0
     return max(parts, min(parts * 2**steps, MOST_PARTS))
@@ -85,9 +87,9 @@ def next_parts(parts: int, by_time_step: float, error: float) -> int:
 def next_level(
     level: Level, stated: float | None, by_time_step: float, error: float, *, others: float = 0.0
 ) -> Level | None:
-    """Elements across and parts of a stroke of the level after one; None if that does, or there is no finer one.
+    """Elements across and parts of a stroke of the next level; None if this one is accurate enough or the finest.
 
-    ``others`` is the largest of the other stated errors over what was asked for.
+    ``others`` is the largest ratio of another estimated error to the requested one [-].
     """
     across, parts = level
     if stated is not None and stated <= error and others <= 1:
@@ -111,12 +113,12 @@ def run_to_error(
     figures: bool = True,
     worker: Worker | None = None,
 ) -> Result:
-    """Run a scene whose ``accuracy.error`` is given on as fine a level as that, and ``peak_error``, takes.
+    """Run a scene that gives ``accuracy.error``, and maybe ``peak_error``, until its estimated errors are as small.
 
-    Earlier levels stay in the folder's ``levels``. If the finest there is states more than was asked for, its summary
-    warns. ``summary["levels"]`` tells each level's error and seconds.
+    Files of earlier levels are in the subfolder ``levels``. If the finest possible level has a larger error than
+    requested, its summary has a warning. ``summary["levels"]`` lists error and CPU time of each level.
 
-    Parameters and errors as ``run``; the first level's companions run in ``worker``, if it is given.
+    Parameters and errors as ``ngwear.loop.run.run``; the coarser runs of the first level use ``worker``, if given.
     """
     folder, asked = OutFolder(Path(out), CHECKPOINT, resume=resume), asked_for(scene)
     done = _earlier(folder, scene, resume=resume)
@@ -153,12 +155,12 @@ def _note(folder: OutFolder, scene: Scene, done: list[dict[str, Any]]) -> None:
 
 
 def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:
-    """The scene with so many elements across its contacts, tolerances that go along, and strokes in so many parts."""
+    """The scene with this number of elements across, the tolerances for it, and this number of parts of a stroke."""
     return replace(scene, accuracy=replace(scene.accuracy.with_across(across), parts=parts))
 
 
 def asked_for(scene: Scene) -> dict[str, float]:
-    """Errors that a scene asks for, by their names in the summary."""
+    """Errors that a scene requests, by their names in the summary."""
     accuracy = scene.accuracy
     asked = {DEPTH: accuracy.error, PEAK: accuracy.peak_error}
     return {name: error for name, error in asked.items() if error is not None}
@@ -171,7 +173,7 @@ def _after(done: Mapping[str, Any], asked: Mapping[str, float]) -> Level | None:
 
 
 class _Told:
-    """What a level's summary tells of what was asked for, and of all levels."""
+    """Adds to a level's summary the requested errors and a table of all levels."""
 
     def __init__(self, done: list[dict[str, Any]], level: Level, asked: Mapping[str, float]) -> None:
         self.done, self.level, self.asked = done, level, asked
@@ -200,15 +202,15 @@ class _Told:
             return
         for name, limit in self.asked.items():
             if known and name in stated and stated[name] > limit:
-                says = f"states an error of the {name[:-4]} of {stated[name]:.2g}"
+                says = f"has an error of the {name[:-4]} of {stated[name]:.2g}"
                 summary["warnings"].append(f"the finest level {says}; {limit:.2g} was asked for")
         if not known:
-            says = f"does not know its error; {self.asked[DEPTH]:.2g} of the {DEPTH[:-4]} was asked for"
+            says = f"has no error estimate; {self.asked[DEPTH]:.2g} of the {DEPTH[:-4]} was asked for"
             summary["warnings"].append(f"the finest level {says}")
 
 
 def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:
-    """What is known of the levels that an earlier process has done."""
+    """Data of the levels that an earlier process has completed."""
     file = folder.path / NOTES
     if not resume or not file.exists():
         file.unlink(missing_ok=True)
@@ -224,19 +226,19 @@ def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str,
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
     if of != fingerprint(scene):
-        raise ResultError(f"{folder.path} holds a run of another scene (or of a changed one): give another folder")
+        raise ResultError(f"{folder.path} holds a run of another scene, or the scene was changed: give another folder")
     _put_away(folder, levels[-1])
     return levels
 
 
 def _place(folder: OutFolder, level: Mapping[str, Any]) -> Path:
-    """Where a level's files are put away."""
-    parts = "" if level[PARTS] == 1 else f" in {level[PARTS]:d} parts"
+    """Folder of a level's files."""
+    parts = "" if level[PARTS] == 1 else f" in {level[PARTS]} parts"
     return folder.path / LEVELS / f"{level[ACROSS]:g}{parts}"
 
 
 def _put_away(folder: OutFolder, level: Mapping[str, Any]) -> None:
-    """Move a level's files to its own folder, the checkpoint last: begun but for that, it goes on after a kill."""
+    """Move a level's files to its own folder, the checkpoint last, so that an interrupted move can be continued."""
     place = _place(folder, level)
     if (place / CHECKPOINT).exists():
         return
@@ -247,7 +249,7 @@ def _put_away(folder: OutFolder, level: Mapping[str, Any]) -> None:
 
 
 def _hand_down(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> None:
-    """Leave what earlier levels and their companions have read off as that of a level's companions."""
+    """Use the data of earlier levels and of their coarser runs as the coarser runs of a level."""
     for power, name in ((1, FILE), (2, COARSEST)):
         companion = coarser(level, COARSER**power)
         for entry in done:

@@ -1,4 +1,4 @@
-"""The knobs of a scene that trade time for error, as ladders, and the scene at any of their rungs."""
+"""Parameters of a scene that trade computing time for error, as ladders of values, and the scene at any of them."""
 
 from __future__ import annotations
 
@@ -14,31 +14,32 @@ from ngwear.scene.checks import why_not_order
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
 
+# Ladders: factors of 2 where the error falls with the value, wide enough that all three targets may lie in between.
 MESH = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # times the scene's element edge
 JUMPS = (16.0, 4.0, 1.0, 0.25, 0.0625)  # times its wear_error: the jump changes with the square root
-STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)
-BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # as far as the track leaves room
-PARTS = (1, 2, 4, 8)
-FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)
+STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)  # times its stress_error
+BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # times the block's reach, as far as the track leaves room
+PARTS = (1, 2, 4, 8)  # of a stroke
+FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)  # each that keeps another arm is a rung
 HIGHER_ORDER = 0.25  # of what order 1 differs from order 2 by: order 2 errs less, by 1/4 and 1/200 on seal and shaft
-EACH_BEGINS = 0.02  # wear_error from which jumps are coarsened in a scene that solves each stroke
+EACH_BEGINS = 0.02  # wear_error from which jumps are coarsened in a scene that solves each stroke: the default
 AnyScene = Scene | PinScene
 
 
 @dataclass(frozen=True)
 class Knob:
-    """A ladder and what a rung of it does to a scene."""
+    """A ladder, and the function that sets one of its values in a scene."""
 
     ladder: Ladder
     apply: Callable[[Any, float], Any]
 
 
 def knobs(scene: AnyScene) -> tuple[Knob, ...]:
-    """The knobs that the scene's solver really has, the mesh first.
+    """Parameters that influence the error of the scene, the mesh first.
 
-    Increments of the load are none: where all of a contact slides, an equilibrium does not depend on the way to it, and
-    where friction sticks, hardly: with increments of a quarter the clamps of the shipped torn seal carry as much to
-    1e-5 (``tests/unit/error_estimates/test_cost_runs.py``, slow). Only memory has a time step.
+    Load increments are not among them. In full sliding the equilibrium does not depend on the load path; with stick and
+    slip it hardly does: with increments of a quarter the clamp force of the shipped torn seal is the same to 1e-5
+    (``tests/unit/error_estimates/test_cost_runs.py``, slow). Only memory has a time step.
     """
     if isinstance(scene, PinScene):
         return _pin_knobs(scene)
@@ -56,7 +57,7 @@ def knobs(scene: AnyScene) -> tuple[Knob, ...]:
 
 
 def at(scene: AnyScene, chosen: Sequence[Knob], setting: Setting) -> Any:
-    """The scene at a setting.
+    """The scene with a setting.
 
     Raises
     ------
@@ -70,7 +71,7 @@ def at(scene: AnyScene, chosen: Sequence[Knob], setting: Setting) -> Any:
 
 
 def changes(scene: AnyScene, other: AnyScene) -> dict[str, Any]:
-    """What to write into a scene's file to make it another, by place; nothing if they are alike."""
+    """Changes of a scene file that turn one scene into another, by place; empty if they are equal."""
     tables = {"accuracy": "mesh"} if isinstance(scene, PinScene) else {"accuracy": "accuracy", "wear": "wear"}
     found: dict[str, Any] = {}
     for table, attribute in tables.items():
@@ -91,7 +92,7 @@ def _scaled(
     below: float = float("inf"),
     smooth: bool = True,
 ) -> Ladder:
-    """Multiples of the scene's value."""
+    """Ladder of multiples of the scene's value."""
     values = [own * factor for factor in factors if factor == 1.0 or own * factor < below]
     return Ladder(
         name=name,
@@ -105,7 +106,7 @@ def _scaled(
 
 
 def _mesh(scene: Scene) -> Knob:
-    """Element edges near and far by one factor, those of the mounting mesh as far as they must follow."""
+    """All element edges times one factor; those of the mounting mesh only as far as necessary."""
     if scene.accuracy.across is not None:
         ladder = _scaled("element edge", "element edge over contact width [-]", 1 / scene.accuracy.across, MESH, 1.2)
         ladder = replace(ladder, labels=tuple(f"{1 / value:.3g} elements across" for value in ladder.values))
@@ -121,7 +122,7 @@ def _mesh(scene: Scene) -> Knob:
 
 
 def _jumps(scene: Scene) -> Knob:
-    """Tolerances of the cycle jump, and each stroke solved at the end."""
+    """Tolerances of the cycle jump; the last value solves each stroke."""
     each = scene.wear.step == "each"
     start = EACH_BEGINS if each else scene.accuracy.tolerances.wear_error
     values = [start * factor for factor in JUMPS if start * factor < 1] + [0.0]
@@ -155,17 +156,17 @@ def _stress(scene: Scene) -> Knob:
 
 
 def _orders(scene: Scene) -> list[Knob]:
-    """Orders that the elements can have, on about the scene's own elements; the value is one over the order.
+    """Element orders, on about the same mesh; the value is one over the order.
 
-    On elements on which order m has a stress error of e, order k has one of about e^(k/m): so the criterion goes along.
-    Else order 1 would be tried on a mesh many times as fine.
+    If order m has a stress error of e on a mesh, order k has about e^(k/m): so ``stress_error`` is changed with the
+    order. Otherwise order 1 would use a much finer mesh.
 
-    Measured with ``ngwear run`` on the shipped scenes, ``accuracy.order`` and ``accuracy.stress_error`` as said here
-    (0.224, 0.05, 0.0112): processor time, and maximum depth and peak pressure against order 3. The shaft: 3.7, 4.2 and
-    6.7 s; order 1 errs by 0.21 % and 1.1 %, order 2 by 0.001 % and 0.01 %. The seal: 21, 30 and 56 s (order 3 at 0.05);
-    order 1 errs by 1.1 % and 3.1 %, order 2 by 0.27 % and 0.3 %. The ends of a contact of order 1 lie within an element
-    only: the seal's width is 17 % off. At equal error order 2 is the cheapest: on the shaft's edges of 0.1 mm its depth
-    errs by 0.02 % in 2.1 s, that of order 3 by 0.05 % in 2.8 s.
+    Measured with ``ngwear run`` on the shipped scenes, with ``stress_error`` 0.224, 0.05 and 0.0112 for orders 1, 2 and
+    3; errors of maximum depth and peak pressure against order 3. Shaft: 3.7, 4.2 and 6.7 s CPU time; errors of order 1
+    0.21 % and 1.1 %, of order 2 0.001 % and 0.01 %. Seal: 21, 30 and 56 s (order 3 with 0.05); errors of order 1 1.1 %
+    and 3.1 %, of order 2 0.27 % and 0.3 %. Order 1 locates the ends of a contact only to one element: the contact width
+    of the seal has an error of 17 %. At equal error order 2 is the fastest: on the shaft with edges of 0.1 mm the error
+    of the depth is 0.02 % in 2.1 s with order 2, and 0.05 % in 2.8 s with order 3.
     """
     orders = [order for order in ORDERS if why_not_order(scene, order) is None]
     if len(orders) < 2:
@@ -190,7 +191,7 @@ def _orders(scene: Scene) -> list[Knob]:
 
 
 def _time_step(scene: Scene) -> Knob:
-    """Parts of a stroke, each with a solve of its own; the value is one over them."""
+    """Parts of a stroke, each with its own solve; the value is one over their number."""
     parts = sorted({*PARTS, scene.accuracy.parts})
     ladder = Ladder(
         name="time step",
@@ -214,7 +215,7 @@ def _foldings_of_wear(scene: Scene, tolerance: float) -> list[Folding]:
 
 
 def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: bool = False) -> list[Knob]:
-    """Tolerances of folding that differ in the arms kept, at least one if ``needed``; no knob if none does."""
+    """Values of folding_error that differ in the relaxation times kept, of which at least one if ``needed``."""
     found: dict[tuple[tuple[float, ...], ...], float] = {}
     for tolerance in (own, *FOLDING):
         kept = tuple(f.kept.times for f in folded(tolerance))
@@ -272,7 +273,7 @@ def _foldings(scene: PinScene, series: Any, tolerance: float) -> list[Folding]:
 
 
 def _block_ladder(scene: PinScene) -> Ladder:
-    """How far the block reaches, over the sheet's thickness; the value is one over it, which falls as for any knob."""
+    """Half length of the block over the sheet's thickness; the value is one over it, so that it decreases."""
     mesh, room = scene.mesh, scene.pin.track_radius / scene.pin.thickness
     factors = [f for f in BLOCK if f <= 1 or (f * mesh.beside < room and f * mesh.reach < math.pi * room)]
     reaches = [mesh.reach * factor for factor in factors]

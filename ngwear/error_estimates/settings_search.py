@@ -1,4 +1,4 @@
-"""In which order a study's runs are made, and which are not begun because they would not fit the budget."""
+"""Order of the runs of a cost study, and which runs do not fit the budget."""
 
 from __future__ import annotations
 
@@ -11,6 +11,8 @@ from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement, Setting,
 from ngwear.error_estimates.pareto_front import cheapest
 from ngwear.errors import SceneError
 
+# Shares of the budget, in the order in which they are spent: what a short budget tells depends on them, no result does.
+# Tried on the rod seal and the shaft within 600 and 300 s (``ngwear cost``).
 CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended
 FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
 OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
@@ -21,7 +23,7 @@ Measure = Callable[[Setting, float], Measurement]
 
 @dataclass(frozen=True)
 class Choice:
-    """What is recommended for a target.
+    """Recommended setting for a target error.
 
     Attributes
     ----------
@@ -30,7 +32,7 @@ class Choice:
     setting : tuple of int or None
         None if no setting is known to reach it.
     measured : bool
-        Whether the setting itself has been run, or is put together from runs that differ in one knob each.
+        True: the setting has been run. False: it is predicted from runs that differ in one parameter each.
     """
 
     target: float
@@ -39,25 +41,25 @@ class Choice:
 
 
 def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measure) -> Study:
-    """Climb the ladders from coarse to fine, the cheapest rung of all first, as far as the budget reaches.
+    """Run the levels of all ladders from coarse to fine, the cheapest next level first, within the budget.
 
-    Of a ladder whose coarsest rung is the scene's own, nothing is known until a finer one has been run: it goes first.
+    A ladder whose coarsest level is that of the scene gives no information until a finer one is run: it comes first.
 
     Parameters
     ----------
     ladders : tuple of Ladder
-        That of the mesh first.
+        The ladder of the mesh first.
     main : str
-        The quantity that the targets are about.
+        The quantity to which the target errors belong.
     budget : float
-        Wall seconds of all runs.
+        Wall time of all runs [s].
     measure : callable
-        Of a setting and the seconds left; it stops a run that takes more.
+        Runs a setting, with a limit of time [s], and returns its Measurement.
 
     Raises
     ------
     SceneError
-        If not even one run fits.
+        If the budget is too small for one run.
     """
     study = Study(ladders, main, tuple(ladder.own for ladder in ladders))
     base = _climb_mesh(study, budget, measure)
@@ -87,7 +89,7 @@ def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measur
 
 
 def _run(study: Study, setting: Setting, budget: float, measure: Measure, *, share: float = 1.0) -> Measurement:
-    """Run a setting for at most a share of what is left; a run that is stopped is left out."""
+    """Run a setting for at most a share of the remaining time; a run that is stopped counts as left out."""
     run = measure(setting, share * (budget - study.spent))
     study.runs[setting] = run
     if run.status == STOPPED:
@@ -96,9 +98,9 @@ def _run(study: Study, setting: Setting, budget: float, measure: Measure, *, sha
 
 
 def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
-    """Run the scene on a coarser mesh and on its own; return the rung on which the other ladders are climbed.
+    """Run the scene on a coarser mesh and on its own; return the mesh level for the other ladders.
 
-    The coarsest mesh only if the coarser one is too slow: there, the wear may call for many more steps.
+    Still coarser meshes are used only if this is too slow: on them wear may need many more steps.
     """
     mesh = study.ladders[0]
     first = max(mesh.own - 1, 0)
@@ -117,7 +119,7 @@ def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
 
 
 def _other_runs(study: Study) -> float:
-    """What the other ladders take up to a rung beyond the scene's, over a run of the scene on the same mesh."""
+    """Time of the other ladders up to one level finer than the scene, over a run of the scene on the same mesh."""
     runs = 1.0
     for ladder in study.ladders[1:]:
         own = ladder.values[ladder.own]
@@ -127,7 +129,7 @@ def _other_runs(study: Study) -> float:
 
 
 def _next_rung(study: Study, k: int) -> int | None:
-    """The coarsest rung of a ladder that has not been tried; None at its end."""
+    """The coarsest level of a ladder that has not been run; None at its end."""
     ladder = study.ladders[k]
     tried = [i for i in range(len(ladder.values)) if rung_of(study.base, k, i) in study.runs]
     rungs = study.rungs(k)
@@ -137,17 +139,17 @@ def _next_rung(study: Study, k: int) -> int | None:
     if not left or failed_fine or study.settled(k):
         return None
     if ladder.most_solves and 0 <= finest < left[0] and rungs[finest].solves >= ladder.most_solves:
-        return left[-1]  # finer tolerances of the jump have no jumps left to shorten
+        return left[-1]  # each stroke is solved already: smaller tolerances change nothing
     return left[0]
 
 
 def _tells_nothing(study: Study, k: int) -> bool:
-    """Whether all that there is of a ladder is the base."""
+    """Whether a ladder has no run other than the base, which is its coarsest level."""
     return study.ladders[k].own == 0 and len(study.rungs(k)) < 2
 
 
 def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:
-    """Note a rung for which there is no time, and the scene's own if it is finer still."""
+    """Record a level for which there is no time, and that of the scene if it is finer."""
     study.left_out[rung_of(study.base, k, rung)] = seconds
     own = study.ladders[k].own
     if own > rung and rung_of(study.base, k, own) not in study.runs:
@@ -155,44 +157,44 @@ def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:
 
 
 def _refuse_if_none_fits(study: Study, budget: float, measure: Measure) -> None:
-    """SceneError if all that was run had to be stopped; it says what one run takes.
+    """SceneError if all runs had to be stopped, with the time that one run needs.
 
-    Where the budget ended before that could be told, a run beyond it of at most ``BEYOND`` seconds tells.
+    If that time is not known, it is measured by a run beyond the budget of at most ``BEYOND`` seconds.
     """
     stopped = {setting: run for setting, run in study.runs.items() if run.status == STOPPED}
     if not stopped or len(stopped) < len(study.runs):
         return
     setting = min(stopped, key=lambda s: (stopped[s].needed if math.isfinite(stopped[s].needed) else math.inf, s))
-    run, told = stopped[setting], ""
+    run, source = stopped[setting], ""
     if not math.isfinite(run.needed):
         run = measure(setting, BEYOND)
-        told = f", as a run of {_rounded(run.wall)} s beyond the budget tells"
+        source = f" (measured by a run of {_rounded(run.wall)} s beyond the budget)"
     needed = run.needed if run.status == STOPPED else run.wall
     known = math.isfinite(needed)
     takes = f"about {_rounded(needed)} s" if known else f"more than {_rounded(run.wall)} s"
     give = f"give {_rounded(10 * needed)} s or more for a study" if known else "give many times as much"
     label = study.ladders[0].labels[setting[0]]
     raise SceneError(
-        "cost.budget", budget, f"does not reach for one run: on a mesh of {label} it takes {takes}{told}; {give}"
+        "cost.budget", budget, f"is too small for one run: on a mesh of {label} it takes {takes}{source}; {give}"
     )
 
 
 def _rounded(seconds: float) -> str:
-    """Two digits, never as a power of ten."""
+    """Two digits, without an exponent."""
     return f"{float(f'{seconds:.2g}'):g}"
 
 
 def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
-    """The cheapest setting for each target, run as far as the budget reaches: what fails its target gives way.
+    """Run the fastest setting for each target within the budget; a setting that misses its target is replaced.
 
-    Before, all knobs at their finest together, if there is time: that tells whether their errors add up.
+    If there is time, all parameters at their finest are run first: this shows whether their errors add up.
 
     Parameters
     ----------
     study : Study
-        Gets the runs.
+        The runs are added to it.
     budget : float
-        Wall seconds of all runs.
+        Wall time of all runs [s].
     measure : callable
     """
     if any(len(study.rungs(k)) < 2 for k in range(len(study.ladders))) or study.base not in study.runs:
@@ -200,7 +202,7 @@ def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
     if study.seconds(study.finest, wall=True) <= TOGETHER * (budget - study.spent):
         _run(study, study.finest, budget, measure)
     choices = [_confirmed(study, target, budget, measure) for target in TARGETS]
-    # A run for another target may have come out cheaper.
+    # A run for another target may be faster.
     return [_cheapest_run(study, c.target, c.setting) if c.measured else c for c in choices]
 
 
@@ -227,6 +229,6 @@ def _confirmed(study: Study, target: float, budget: float, measure: Measure) -> 
 
 
 def _cheapest_run(study: Study, target: float, predicted: Setting | None) -> Choice:
-    """The cheapest run that reaches the target if there is one, else the setting that should."""
+    """The fastest run that reaches the target; without one, the predicted setting."""
     fit = [s for s in study.front() if study.error(s, study.main) <= target]
     return Choice(target, fit[0], measured=True) if fit else Choice(target, predicted)

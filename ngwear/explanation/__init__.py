@@ -1,1 +1,1 @@
-"""What a scene simulates, what it leaves out, and whether that matters."""
+"""Which effects a scene simulates and neglects, and whether a neglected effect matters."""

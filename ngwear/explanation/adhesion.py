@@ -1,17 +1,16 @@
-"""Adhesion of a contact: the pull that it withstands, and how far the attraction reaches."""
+"""Adhesion of a contact: pull-off force, and Tabor's number."""
 
 from __future__ import annotations
 
 import math
 
-LIMIT = 0.1  # pull-off force over load
+LIMIT = 0.1  # pull-off force over load: by that share of it adhesion changes what the contact carries
 
 
 def hertz_radius(load: float, half_width: float, modulus: float) -> float:
     """Radius of the cylinder whose Hertzian contact has this load and width, ``R = pi E* a^2 / (4 P')`` [mm].
 
-    Johnson, *Contact Mechanics*, 1985, equation 4.43. It stands for contacts that are no Hertzian ones: the curvature
-    of their gap.
+    Johnson, *Contact Mechanics*, 1985, equation 4.43. For other contacts it is an equivalent radius.
 
     Parameters
     ----------
@@ -26,10 +25,10 @@ def hertz_radius(load: float, half_width: float, modulus: float) -> float:
 
 
 def line_pull_off(radius: float, modulus: float, work: float) -> float:
-    """Pull that parts a cylinder from a half-space, ``(3/4) (4 pi E* W^2 R)^(1/3)`` [N/mm].
+    """Pull-off force of a cylinder on a half-space, ``(3/4) (4 pi E* W^2 R)^(1/3)`` [N/mm].
 
-    The least load of ``P' = pi E* a^2 / (4 R) - sqrt(2 pi E* a W)`` (Barquins, J. Adhesion 26 (1988) 1), the line
-    contact of Johnson, Kendall & Roberts. Neglected: roughness, oil, and rubber's losses, which multiply W as it parts.
+    The minimum of ``P' = pi E* a^2 / (4 R) - sqrt(2 pi E* a W)`` (Barquins, J. Adhesion 26 (1988) 1), the line contact
+    of Johnson, Kendall & Roberts. Neglected: roughness, oil, and rubber's losses, which multiply W at separation.
 
     Parameters
     ----------
@@ -44,7 +43,7 @@ def line_pull_off(radius: float, modulus: float, work: float) -> float:
 
 
 def point_pull_off(radius: float, work: float) -> float:
-    """Pull that parts a ball from a half-space, ``(3/2) pi W R`` [N].
+    """Pull-off force of a ball on a half-space, ``(3/2) pi W R`` [N].
 
     Johnson, Kendall & Roberts, Proc. R. Soc. A 324 (1971) 301; neglects what ``line_pull_off`` does.
 
@@ -59,7 +58,7 @@ def point_pull_off(radius: float, work: float) -> float:
 
 
 def tabor(radius: float, modulus: float, work: float, distance: float) -> float:
-    """``(R W^2 / (E*^2 z0^3))^(1/3)`` [-]: how far adhesion stretches the surface over how far it reaches.
+    """``(R W^2 / (E*^2 z0^3))^(1/3)`` [-]: deformation by adhesion over range of the attraction.
 
     Tabor, J. Colloid Interface Sci. 58 (1977) 2. Above 5 the theory of Johnson, Kendall & Roberts holds, and with it
     the pull-off forces here; below 0.1 the attraction acts outside the contact (Maugis, ibid. 150 (1992) 243; for lines

@@ -1,4 +1,4 @@
-"""Constants that no scene gives, each with its source."""
+"""Constants that no scene gives, with their sources."""
 
 from __future__ import annotations
 
@@ -11,36 +11,38 @@ from ngwear.errors import SceneError
 
 @dataclass(frozen=True, kw_only=True)
 class Assumed:
-    """What estimates of absent effects assume, in the program's units (mm, N, MPa, s, t, K); each can be replaced.
+    """Constants for the estimates of neglected effects, in units of mm, N, MPa, s, t, K; each can be replaced.
 
     Parameters
     ----------
     counter_conductivity : float
-        Of the counter-surface [W/(m K) = N/(s K)]; steel, 40 to 60 plain and low-alloyed, 15 stainless (Incropera &
-        DeWitt, *Fundamentals of Heat and Mass Transfer*, table A.1).
+        Heat conductivity of the counter-surface [W/(m K) = N/(s K)]; steel, 40 to 60 plain and low-alloyed, 15
+        stainless (Incropera & DeWitt, *Fundamentals of Heat and Mass Transfer*, table A.1).
     counter_heat_capacity : float
-        Of the counter-surface, per volume [MJ/(m³ K) = MPa/K]; steel, 7.85 g/cm³ times 0.434 J/(g K), the same table.
+        Volumetric heat capacity of the counter-surface [MJ/(m³ K) = MPa/K]; steel, 7.85 g/cm³ times 0.434 J/(g K), the
+        same table.
     rubber_conductivity : float
-        [W/(m K)]; NBR, see ``materials.library``.
+        Heat conductivity of the rubber [W/(m K)]; NBR, see ``materials.library``.
     rubber_heat_capacity : float
-        Per volume [MPa/K]; 2, the round value for filled rubber.
+        Volumetric heat capacity of the rubber [MPa/K]; 2, a rounded value for filled rubber.
     rubber_density : float
-        [t/mm³]; filled NBR, 1.1 to 1.3 g/cm³ in data sheets.
+        Density of the rubber [t/mm³]; filled NBR, 1.1 to 1.3 g/cm³ in data sheets.
     work_of_adhesion : float
-        Of rubber on the counter-surface, clean, dry and smooth [N/mm]; 0.05 J/m² is that of van der Waals forces
-        between polymers (Israelachvili, *Intermolecular and Surface Forces*). Roughness and oil leave less.
+        Work of adhesion of rubber on a clean, dry, smooth surface [N/mm]; 0.05 J/m² is that of van der Waals forces
+        between polymers (Israelachvili, *Intermolecular and Surface Forces*). Roughness and oil reduce it.
     equilibrium_distance : float
-        Of the surfaces' atoms [mm]; 0.3 nm, between his cut-off of 0.165 nm and the 0.4 nm of molecules.
+        Distance of the atoms of both surfaces [mm]; 0.3 nm, between his cut-off of 0.165 nm and the 0.4 nm of
+        molecules.
     oil_viscosity : float
-        Dynamic [MPa s]; 0.04 Pa s is that of a hydraulic oil ISO VG 46 (46 mm²/s at 40 degrees Celsius, ISO 3448) of
-        0.87 g/cm³.
+        Dynamic viscosity of the oil [MPa s]; 0.04 Pa s is that of a hydraulic oil ISO VG 46 (46 mm²/s at 40 degrees
+        Celsius, ISO 3448) of 0.87 g/cm³.
     roughness : float
-        Root mean square of both surfaces together [mm]; 0.5 µm, a ground rod and a moulded seal.
+        Combined rms roughness of both surfaces [mm]; 0.5 µm for a ground rod and a moulded seal.
 
     Raises
     ------
     SceneError
-        For a value that is not finite and positive.
+        If a value is not finite and positive.
     """
 
     counter_conductivity: float = 50.0
@@ -60,12 +62,12 @@ class Assumed:
 
     @property
     def counter_diffusivity(self) -> float:
-        """Of heat in the counter-surface [mm²/s]."""
+        """Thermal diffusivity of the counter-surface [mm²/s]."""
         return self.counter_conductivity / self.counter_heat_capacity
 
     @property
     def rubber_diffusivity(self) -> float:
-        """Of heat in the rubber [mm²/s]."""
+        """Thermal diffusivity of the rubber [mm²/s]."""
         return self.rubber_conductivity / self.rubber_heat_capacity
 
     def as_dict(self) -> dict[str, float]:
@@ -87,12 +89,12 @@ class Assumed:
         }
 
     def replaced(self, changes: Sequence[str]) -> Assumed:
-        """Take other values, each written ``name=value`` in the program's units.
+        """Replace values by texts ``name=value``, in units of mm, N, MPa, s, t, K.
 
         Raises
         ------
         SceneError
-            For an unknown name or what is no number.
+            If a name is unknown or a value is not a number.
         """
         values = {}
         for change in changes:

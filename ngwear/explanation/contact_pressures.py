@@ -1,4 +1,4 @@
-"""How hard a scene's surfaces press, at little cost: mounted once, and each stroke solved once on a coarse mesh."""
+"""Contact pressures of an unworn scene, on a coarse mesh: mounted once, and each kind of stroke solved once."""
 
 from __future__ import annotations
 
@@ -11,35 +11,35 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import NgwearError
 from ngwear.geometry.body import Body
-from ngwear.loop.mounting import mount, unworn_body
+from ngwear.loop.mounting import MAY_COME, mount, unworn_body
 from ngwear.loop.refinement import wanted_size
 from ngwear.loop.stage import Stage
-from ngwear.loop.stepper import MAY_COME
 from ngwear.scene.contact import Contact
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
-POINTS = 12  # of the background in each triangle
+POINTS = 12  # of the background in each triangle: ``fields.background_mesh.RULE``
+# Pressures are wanted to a tenth or so, and in seconds.
 COARSER = 4.0  # than the layers of a scene that deactivates elements, which are as fine everywhere
 
 
 @dataclass(frozen=True)
 class Strip:
-    """One connected piece of a contact in one stroke.
+    """One connected contact zone in one stroke.
 
     Attributes
     ----------
     contact : Contact
     stroke : Stroke
     load : float
-        Normal force per length across the section [N/mm].
+        Normal force per length normal to the section [N/mm].
     width : float
-        Deformed length along the outline [mm].
+        Width along the deformed outline [mm].
     peak : float
         Highest Cauchy pressure [MPa].
     place : tuple of float
-        Its middle, deformed [mm].
+        Deformed position of its middle [mm].
     """
 
     contact: Contact
@@ -57,10 +57,10 @@ class Strip:
 
 @dataclass(frozen=True)
 class Pressing:
-    """Strips of all contacts in all kinds of stroke of an unworn scene; ``missing`` says why there are none.
+    """Contact zones of all kinds of stroke of an unworn scene; ``missing`` is the reason if there are none.
 
-    ``states`` are the equilibria, one for each kind of stroke, on the mesh of the stage that was given. That mesh is
-    the mounting one, not the run's: widths are off by up to one of its elements at each end, and peaks are too low.
+    ``states`` are the equilibria, one for each kind of stroke, on the mounting mesh, which is coarser than that of a
+    run: contact widths have an error of up to one element at each end, and peak pressures are too low.
     """
 
     strips: tuple[Strip, ...] = ()
@@ -69,15 +69,15 @@ class Pressing:
 
 
 def press(scene: Scene, stage: Stage | None = None, *, on_mount: Callable[[float], None] | None = None) -> Pressing:
-    """Mount an unworn scene without memory on its mounting mesh and solve one stroke of each kind.
+    """Mount a scene on its mounting mesh, and solve one stroke of each kind, without memory and wear.
 
     Parameters
     ----------
     scene : Scene
     stage : Stage or None
-        The scene on its mounting mesh, if there is one already; its state is overwritten.
+        The scene on its mounting mesh, if it exists already; its state is overwritten.
     on_mount : callable or None
-        Called with the fraction that is done.
+        Called with the completed fraction.
     """
     tell = on_mount or (lambda fraction: None)
     try:
@@ -101,7 +101,7 @@ def press(scene: Scene, stage: Stage | None = None, *, on_mount: Callable[[float
 
 
 def _plain(scene: Scene) -> Scene:
-    """The scene without elements that may be lost, on a coarser mesh."""
+    """The scene without deactivation, on a coarser mesh."""
     lengths = scene.accuracy.lengths
     edge = COARSER * lengths.patch
     mounting, coarse = max(edge, lengths.mounting), max(edge, lengths.coarse)
@@ -129,9 +129,9 @@ def _strips(stage: Stage, spec: Contact, stroke: Stroke) -> list[Strip]:
 
 
 def history_points(stage: Stage, states: Sequence[Array]) -> int:
-    """Points that the memory of a scene will have, by the mesh that the run makes for the contacts seen here.
+    """Number of material points of a scene's memory, on a mesh for the contacts found here.
 
-    The run refines once more, where stresses on the fine mesh ask for it.
+    A run has more points if stresses on the finer mesh require it.
     """
     if not states:
         return POINTS * stage.body.mesh.ne

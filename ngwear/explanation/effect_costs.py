@@ -1,4 +1,4 @@
-"""What each effect brings to a problem: unknowns, entries of the matrix, memory."""
+"""Cost of each effect: unknowns, matrix entries, memory."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ MEGABYTE = 2**20
 
 @dataclass(frozen=True)
 class Costs:
-    """By effect: unknowns [-], entries of the matrix [-], and memory [MB].
+    """Unknowns [-], matrix entries [-] and memory [MB] of each effect.
 
-    An entry that couples two effects' unknowns belongs to the effect that came later. Memory is that of the matrix and
-    of what is kept at material points; factors of the matrix, which need a factorisation to be known, come on top.
+    An entry that couples unknowns of two effects belongs to the later one. The memory is that of the matrix and of the
+    material points; the factors of the matrix need additional memory, which only a factorisation can show.
     """
 
     unknowns: dict[str, int]
@@ -27,14 +27,14 @@ class Costs:
 
 
 def costs(problem: Problem, owners: Mapping[str, str]) -> Costs:
-    """Count a problem's unknowns and its tangent's entries.
+    """Count the unknowns of a problem and the entries of its tangent matrix.
 
     Parameters
     ----------
     problem : Problem
-        Its tangent is assembled at the present state.
+        The tangent is assembled at the present state.
     owners : mapping of str to str
-        The effect of each unknown by the unknown's name; effects in the order in which they come.
+        Effect by name of the unknown, in the order of the effects.
     """
     effects = list(dict.fromkeys(owners.values()))
     owner = np.zeros(problem.space.ndof, dtype=np.int64)

@@ -1,4 +1,4 @@
-"""One verb: say what a scene simulates, what it leaves out, and whether that matters."""
+"""Describe a scene: which effects it simulates and neglects, and whether a neglected effect matters."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ngwear.scene.scene import Scene
 
 
 class Explanation(Mapping[str, Any]):
-    """A description of a scene by its parts, as ``ngwear explain --json`` prints it; printed, that command's text."""
+    """Description of a scene: a mapping with the keys of ``ngwear explain --json``; ``print`` shows it as text."""
 
     def __init__(self, found: Mapping[str, Any]) -> None:
         self._found = found
@@ -32,23 +32,27 @@ class Explanation(Mapping[str, Any]):
 
     @property
     def json(self) -> str:
-        """The description as text in JSON."""
+        """The description as JSON text."""
         return json.dumps(dict(self), indent=2)
 
 
 def explain(
     scene: Scene | PinScene, *, assumed: Assumed | None = None, on_mount: Callable[[float], None] | None = None
 ) -> Explanation:
-    """Describe a scene: each effect and what it brings; each that is left out, with the numbers that judge it.
+    """Describe a scene: its effects with their cost, and neglected effects with dimensionless numbers and a verdict.
 
     Parameters
     ----------
     scene : Scene or PinScene
-        A scene of wear is mounted once on a coarse mesh for its contact pressures.
+        A wear scene is mounted once on a coarse mesh, to find its contact pressures.
     assumed : Assumed or None
-        Constants that the scene does not give.
+        Constants that the scene does not give; default values otherwise.
     on_mount : callable or None
-        Called with the fraction of the mounting that is done.
+        Called with the completed fraction of the mounting.
+
+    Returns
+    -------
+    Explanation
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a scene of a pin on a plate simulates, what it leaves out, and numbers that tell whether that matters."""
+"""Describe a pin scene: effects with their cost, and neglected effects with numbers and a verdict."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ngwear.scene.pin_scene import KIND, PinScene
 
 
 def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str, Any]:
-    """Describe a scene: each effect and what it brings to the first mesh, and each that is left out with its numbers.
+    """Describe a pin scene: each effect with its cost on the first mesh, and each neglected effect with its numbers.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
     kept = "{} to {}".format(*sorted(len(folding.kept.times) for folding in foldings))
     effects = {
         "hyperelasticity": type(material).__name__,
-        "memory": f"{kept} of {len(series.times)} arms in the steady state of a pin that has been running for ever",
+        "memory": f"{kept} of {len(series.times)} arms in the steady state",
         "contact": f"ball of {pin.radius:g} mm under {pin.load:g} N",
     }
     if pin.friction_law is not None:

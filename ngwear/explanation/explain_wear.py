@@ -1,4 +1,4 @@
-"""What a scene simulates and what that takes, what it leaves out, and the numbers that tell whether that matters."""
+"""Describe a wear scene: effects with their cost, solver, and neglected effects with numbers and a verdict."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.scene import Scene
 from ngwear.wear.archard import critical_distance
 
-if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
+if TYPE_CHECKING:  # these modules load the solver
     from ngwear.equilibrium.problem import Problem
     from ngwear.explanation.contact_pressures import Pressing
     from ngwear.loop.stage import Stage
@@ -25,9 +25,9 @@ if TYPE_CHECKING:  # these load the solver, which reading a scene does not need
 def explain_wear(
     scene: Scene, *, assumed: Assumed | None = None, on_mount: Callable[[float], None] | None = None
 ) -> dict[str, Any]:
-    """Describe a scene: each effect and what it brings, the solver, and each effect that is left out and its numbers.
+    """Describe a wear scene: each effect with its cost, the solver, and each neglected effect with its numbers.
 
-    The part is mounted once on a coarse mesh for its contact pressures; no memory, no wear.
+    The part is mounted once on a coarse mesh to find the contact pressures, without memory and wear.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def explain_wear(
     assumed : Assumed or None
         Constants that the scene does not give.
     on_mount : callable or None
-        Called with the fraction of the mounting that is done.
+        Called with the completed fraction of the mounting.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def explain_wear(
 
 
 def _present(scene: Scene) -> dict[str, str]:
-    """Each effect that the scene has, in words."""
+    """Each effect of the scene, with a text."""
     present = {"hyperelasticity": type(scene.part.material).__name__}
     present |= {f"contact '{c.name}'": f"edges {', '.join(c.edges)}" for c in scene.contacts}
     frictions = [(c, law) for c in scene.contacts if (law := c.friction_law) is not None]
@@ -95,7 +95,9 @@ def _present(scene: Scene) -> dict[str, str]:
     if scene.fluid is not None:
         present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
         if not any(stroke.pressure for stroke in scene.program.cycle):
-            present["fluid pressure"] += "; no stroke has a pressure: without [fluid] the result is the same, for less"
+            present["fluid pressure"] += (
+                "; no stroke has a pressure: without [fluid] the result is the same in less time"
+            )
     if scene.worn_edges:
         laws = [c.wear_law.words if c.wear_law else "Archard" for c in scene.contacts if c.wears]
         how = f"{scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"
@@ -115,7 +117,7 @@ def _present(scene: Scene) -> dict[str, str]:
 
 
 def _owners(scene: Scene, names: Sequence[str]) -> dict[str, str]:
-    """The effect that brings each unknown."""
+    """Effect to which each unknown belongs."""
     owners = dict.fromkeys(names, "hyperelasticity")
     for c in scene.contacts:
         owners |= {
@@ -133,7 +135,7 @@ def _unsymmetric(scene: Scene) -> list[str]:
 
 
 def solver_in_words(problem: Problem, unsymmetric: Sequence[str]) -> str:
-    """Which direct solver a problem takes, and why."""
+    """Name of the direct solver of a problem, and the reason."""
     from ngwear.equilibrium.linear import has_pardiso
 
     if problem.symmetric:
@@ -143,7 +145,7 @@ def solver_in_words(problem: Problem, unsymmetric: Sequence[str]) -> str:
 
 
 def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
-    """Memory of what effects keep from step to step [MB], without their share of the matrix."""
+    """Memory of data that effects store from step to step [MB], without the matrix."""
     from ngwear.explanation.contact_pressures import history_points
     from ngwear.explanation.effect_costs import MEGABYTE
 
@@ -161,14 +163,14 @@ def _kept(scene: Scene, stage: Stage, pressing: Pressing) -> dict[str, float]:
 
 def _deactivation_in_words(deactivation: Deactivation) -> str:
     distortion, damage, reach = deactivation.distortion, deactivation.damage, deactivation.reach
-    told = [f"layers {deactivation.depth:g} mm deep; surface nodes wear through them"]
+    parts = [f"layers {deactivation.depth:g} mm deep; surface nodes wear through them"]
     if distortion is not None:
-        told.append(f"distorted beyond a corner cosine of {distortion.corner_cosine:g}")
+        parts.append(f"distorted beyond a corner cosine of {distortion.corner_cosine:g}")
     if damage is not None:
         where = "" if reach is None else f" within {reach:g} mm of the contact"
         over = "" if damage.length is None else f", averaged over {damage.length:g} mm,"
-        told.append(f"torn where the {damage.name}{over} exceeds {damage.critical:g}{where}")
-    return "; ".join(told)
+        parts.append(f"torn where the {damage.name}{over} exceeds {damage.critical:g}{where}")
+    return "; ".join(parts)
 
 
 def _friction_in_words(scene: Scene, contact: Contact, law: FrictionLaw) -> str:
@@ -176,21 +178,21 @@ def _friction_in_words(scene: Scene, contact: Contact, law: FrictionLaw) -> str:
     if not isinstance(law, Constant):
         low, high = friction_range(scene, contact)
         met = f"{low:g}" if low == high else f"{low:g} to {high:g}"
-        words += f"; the scene meets mu = {met}" + (" at p = 0" if law.depends_on_pressure else "")
+        words += f"; mu = {met} over the program" + (" at p = 0" if law.depends_on_pressure else "")
     return f"{words}: {scene.why_it_may_stick(contact)}"
 
 
 def _wear_in_words(scene: Scene, contact: Contact) -> str:
     rate, end = contact.wear_rate, scene.program.slid(scene.program.strokes)
     low, high = rate.curve.extremes(0.0, end)
-    return f"by lubrication, {len(rate.distance)} rows; the scene meets k = {low:g} to {high:g} mm²/N"
+    return f"by lubrication, {len(rate.distance)} rows; k = {low:g} to {high:g} mm²/N over the program"
 
 
 def _memory_in_words(scene: Scene, folding: Folding) -> str:
     kept, fast, slow = len(folding.kept.times), len(folding.fast), len(folding.slow)
     rest = scene.program.rest
     before = f"mounted {rest:g} s before" if math.isfinite(rest) else "mounted and relaxed before"
-    return f"{kept} arms kept; {fast} folded to nothing, {slow} into the elastic part; {before}"
+    return f"{kept} arms kept; {fast} left out as always relaxed, {slow} added to the elastic part; {before}"
 
 
 def _memory_numbers(scene: Scene) -> dict[str, float]:
@@ -209,7 +211,7 @@ def _memory_numbers(scene: Scene) -> dict[str, float]:
 
 
 def _arms(scene: Scene) -> dict[str, str] | None:
-    """Each arm: what becomes of it, its stiffness, and Deborah's number of every kind of stroke."""
+    """Each arm: its stiffness, Deborah numbers of the strokes, and whether it needs a memory."""
     prony, folding, told = scene.part.prony, scene.folding, {}
     if prony is None or folding is None:
         return None

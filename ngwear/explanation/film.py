@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-MIXED, FULL = 1.0, 3.0  # film over roughness, from which films carry and part the surfaces
+MIXED, FULL = 1.0, 3.0  # film over roughness, from which films carry and part the surfaces (lambda ratio, as usual)
 
 
 def hersey(viscosity: float, speed: float, load: float) -> float:
@@ -23,20 +23,20 @@ def hersey(viscosity: float, speed: float, load: float) -> float:
 
 
 def line_film(viscosity: float, speed: float, load: float, radius: float, modulus: float) -> float:
-    """Least film of a soft line contact that is flooded with oil [mm], the counter-surface sliding.
+    """Minimum film thickness of a fully flooded soft line contact with a sliding counter-surface [mm].
 
         h = 3.10 R U^0.6 W^-0.2,   U = eta (v / 2) / (2 E* R),   W = P' / (2 E* R)
 
     (Herrebrugh, J. Lubr. Technol. 90 (1968) 262, in the form of Hamrock, *Fundamentals of Fluid Film Lubrication*,
     isoviscous-elastic regime). Neglected: roughness, starvation, the squeeze at reversals; a seal's film depends on how
-    its own pressure rises at the inlet. So it is an order of magnitude, not a thickness.
+    its own pressure rises at the inlet. So it gives only the order of magnitude.
 
     Parameters
     ----------
     viscosity : float
         eta [MPa s].
     speed : float
-        v, of the counter-surface [mm/s]; the oil is drawn in with half of it.
+        v, of the counter-surface [mm/s]; the entrainment speed is half of it.
     load : float
         P' [N/mm].
     radius : float
@@ -49,7 +49,7 @@ def line_film(viscosity: float, speed: float, load: float, radius: float, modulu
 
 
 def point_film(viscosity: float, speed: float, load: float, radius: float, modulus: float) -> float:
-    """Least film under a ball on soft material that is flooded with oil [mm].
+    """Minimum film thickness under a ball on soft material, fully flooded [mm].
 
         h = 7.43 R U^0.65 W^-0.21 (1 - 0.85 e^-0.31),   U = eta (v / 2) / (2 E* R),   W = F / (2 E* R^2)
 
@@ -71,7 +71,7 @@ def point_film(viscosity: float, speed: float, load: float, radius: float, modul
 
 
 def regime(ratio: float) -> str:
-    """What a film over roughness means, in words."""
+    """Lubrication regime as text, by film thickness over roughness."""
     if ratio < MIXED:
-        return "boundary lubrication, the surfaces' tips carry"
-    return "mixed lubrication, film and tips carry" if ratio < FULL else "a full film that parts the surfaces"
+        return "boundary lubrication, the asperities carry"
+    return "mixed lubrication, film and asperities carry" if ratio < FULL else "a full film that separates the surfaces"

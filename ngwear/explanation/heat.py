@@ -8,14 +8,14 @@ import numpy as np
 from scipy.special import k0e, k1e
 
 LIMIT = 10.0  # K: by WLF's universal constants rubber 50 K above its glass transition then relaxes six times as fast
-POINTS = 2001
+POINTS = 2001  # of a sum over the band; its error is far below that of the constants assumed
 
 
 def peclet(speed: float, half_width: float, diffusivity: float) -> float:
     """``L = v b / (2 kappa)`` [-] of a body that moves past a contact.
 
-    Jaeger (J. Proc. R. Soc. N.S.W. 76 (1942) 203). Below 0.1 heat spreads faster than the body moves; above 5 it is
-    carried along before it spreads.
+    Jaeger (J. Proc. R. Soc. N.S.W. 76 (1942) 203). Below 0.1 heat conduction is faster than the motion; above 5 it
+    is slower.
 
     Parameters
     ----------
@@ -30,15 +30,16 @@ def peclet(speed: float, half_width: float, diffusivity: float) -> float:
 
 
 def band_rise(flux: float, half_width: float, speed: float, conductivity: float, heat_capacity: float) -> float:
-    """Highest steady rise of temperature under a band of uniform heat that moves over a half-space [K].
+    """Maximum steady temperature rise under a band of uniform heat that moves over a half-space [K].
 
-    Jaeger's line sources (Carslaw & Jaeger, *Conduction of Heat in Solids*, 1959, section 10.7) added up over the band:
+    Jaeger's line sources (Carslaw & Jaeger, *Conduction of Heat in Solids*, 1959, section 10.7) integrated over the
+    band:
 
         T(x) = 2 q kappa / (pi k v) [I+(L + X) + I-(L - X)],   X = v x / (2 kappa), L = v b / (2 kappa),
         I+(z) = z e^z (K0(z) + K1(z)) - 1,   I-(z) = z e^-z (K0(z) - K1(z)) + 1,
 
-    the integrals of ``e^(+-t) K0(t)`` (Abramowitz & Stegun, section 11.3). Fast, it is ``2 q sqrt(2 b / (pi k rho c
-    v))``. Neglected: that other passes have left the body warm, and what the other body takes.
+    the integrals of ``e^(+-t) K0(t)`` (Abramowitz & Stegun, section 11.3). At high speed it is ``2 q sqrt(2 b / (pi k
+    rho c v))``. Neglected: heat from earlier passes, and heat into the other body.
 
     Parameters
     ----------
@@ -63,10 +64,11 @@ def band_rise(flux: float, half_width: float, speed: float, conductivity: float,
 
 
 def disc_rise(flux: float, radius: float, speed: float, conductivity: float, heat_capacity: float) -> float:
-    """Highest steady rise under a disc of uniform heat that moves over a half-space [K]; it may stand still.
+    """Maximum steady temperature rise under a disc of uniform heat that moves over a half-space, or rests [K].
 
     ``T = 2 q a / (k sqrt(pi (1.273 + L)))`` with ``L = v a / (2 kappa)`` (Tian & Kennedy, J. Tribol. 116 (1994) 167),
-    which is q a / k at rest and, fast, a band's of the disc's diameter. Neglected: as of ``band_rise``.
+    which is q a / k at rest, and at high speed that of a band with the width of the disc. Neglected: as in
+    ``band_rise``.
 
     Parameters
     ----------
@@ -84,18 +86,18 @@ def disc_rise(flux: float, radius: float, speed: float, conductivity: float, hea
 
 
 def shared_rise(one: float, other: float) -> float:
-    """Rise if the heat is shared so that both bodies get equally hot [K]: ``1 / T = 1 / T_1 + 1 / T_2``.
+    """Temperature rise with heat divided for equal temperature of both bodies [K]: ``1 / T = 1 / T_1 + 1 / T_2``.
 
-    Each is the rise if all of the heat went into that body (Archard, Wear 2 (1959) 438).
+    Each argument is the rise if all heat goes into that body (Archard, Wear 2 (1959) 438).
     """
     return one * other / (one + other)
 
 
 def reach(time: float, diffusivity: float) -> float:
-    """Depth that steady heating of a surface warms, ``sqrt(pi kappa t) / 2`` [mm].
+    """Depth that is warmed by steady heating of a surface, ``sqrt(pi kappa t) / 2`` [mm].
 
-    So that the heat q t in a layer of this depth makes the surface temperature ``2 q sqrt(t / (pi k rho c))`` of a
-    half-space under constant flux (Carslaw & Jaeger, 1959, section 2.9).
+    Defined so that the heat q t in a layer of this depth gives the surface temperature ``2 q sqrt(t / (pi k rho c))``
+    of a half-space under constant flux (Carslaw & Jaeger, 1959, section 2.9).
 
     Parameters
     ----------
@@ -108,7 +110,7 @@ def reach(time: float, diffusivity: float) -> float:
 
 
 def uncooled_rise(heat: float, volume: float, heat_capacity: float) -> float:
-    """Rise of a volume that keeps all of the heat, ``Q / (rho c V)`` [K]; cooling by air, oil and housing is neglected.
+    """Temperature rise of a volume without cooling, ``Q / (rho c V)`` [K].
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 LIMIT = 0.01  # rho v^2 / G: by so much, relatively, inertia changes stresses under a steadily sliding load
-SLOW = 0.1  # travel time of a shear wave over the time of a stroke
+SLOW = 0.1  # travel time of a shear wave over the time of a stroke: ten ways through: the part is as good as at rest
 
 
 def wave_speed(modulus: float, density: float) -> float:
@@ -22,7 +22,7 @@ def wave_speed(modulus: float, density: float) -> float:
 
 
 def mach_squared(speed: float, modulus: float, density: float) -> float:
-    """``rho v^2 / G`` [-]: dynamic pressure over stiffness, of rubber past which a load slides with the speed v [mm/s].
+    """``rho v^2 / G`` [-]: dynamic pressure over stiffness, for a load that slides over rubber with the speed v [mm/s].
 
     The stiffness under a load in steady motion is lower by a share of this order (Johnson, 1985, chapter 11).
     Neglected: vibrations that friction itself excites (squeal), which need no high speed.
@@ -31,7 +31,7 @@ def mach_squared(speed: float, modulus: float, density: float) -> float:
 
 
 def reversal(size: float, modulus: float, density: float, duration: float) -> float:
-    """Time of a shear wave through the part over the time of a stroke, ``L / (c D)`` [-]; small: at rest all the time.
+    """Time of a shear wave through the part over the time of a stroke, ``L / (c D)`` [-]; small: quasi-static.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a wear scene leaves out, and whether that matters, from its contact pressures."""
+"""Effects that a wear scene neglects, and whether they matter, from its contact pressures."""
 
 from __future__ import annotations
 
@@ -15,22 +15,22 @@ from ngwear.loop.law_changes import friction_range
 from ngwear.materials.library import FILLED_ARMS, FILLED_LONG_TERM, FILLED_TIMES
 from ngwear.scene.scene import Scene
 
-SHARE = 0.1  # of a load or a width: from which on it counts
-RELAXED = 0.05  # of the stiffness
+SHARE = 0.1  # of a load or a width: from which on it counts; stated in every verdict
+RELAXED = 0.05  # of the stiffness: what is left of relaxation once it counts as over
 UNSAID = "the strokes have no speed"
 
 
 def left_out(scene: Scene, pressing: Pressing, *, remembers: bool, assumed: Assumed) -> dict[str, Verdict]:
-    """Verdict on each effect that the scene does not have; ``remembers`` tells whether its friction may stick."""
+    """Verdict on each effect that the scene does not have; ``remembers``: whether it has stick and slip."""
     found: dict[str, Callable[[], Verdict]] = {}
     touching = [s for s in pressing.strips if s.contact.slides] or list(pressing.strips)
     rubbing = [s for s in touching if s.contact.slides and s.contact.friction_law is not None]
-    hidden = pressing.missing or "no surface touches the part on the mesh that was tried"
+    hidden = pressing.missing or "no surface touches the part on the mounting mesh"
 
     def of(strips: list[Strip], judge: Callable[[Scene, list[Strip], Assumed], Verdict]) -> Verdict:
         if strips:
             return judge(scene, strips, assumed)
-        return Verdict(words=f"there is no contact pressure to judge by: {hidden}", matters=None)
+        return Verdict(words=f"the contact pressure is not known: {hidden}", matters=None)
 
     frictions = [c for c in scene.contacts if c.friction_law is not None]
     sliding = [c for c in frictions if c.slides]
@@ -51,7 +51,7 @@ def left_out(scene: Scene, pressing: Pressing, *, remembers: bool, assumed: Assu
     return {name: judge() for name, judge in found.items()}
 
 
-_NO_HEAT = Verdict(words="no surface that slides has friction: there is no frictional heat", matters=False)
+_NO_HEAT = Verdict(words="no sliding surface has friction: there is no frictional heat", matters=False)
 
 
 def _main(strips: list[Strip]) -> Strip:
@@ -68,25 +68,25 @@ def _finite(numbers: dict[str, float]) -> dict[str, float]:
 
 
 def _viscosity(scene: Scene) -> Verdict:
-    """By Deborah's number, relaxation time over stroke; the library's filled rubber stands in for an unknown one."""
+    """By Deborah's number, relaxation time over stroke duration, of the library's filled rubber."""
     ratios = [modulus / FILLED_LONG_TERM for modulus in FILLED_ARMS]
     settled = relaxation.relaxed_after(ratios, FILLED_TIMES, RELAXED)
     travel = min(stroke.travel for stroke in scene.program.cycle)
     shortest = min(stroke.duration for stroke in scene.program.cycle)
     numbers = {"speed below which the library's filled rubber has relaxed [mm/s]": travel / settled}
-    unknown = "the material gives no relaxation time tau for Deborah's number tau / D of a stroke that takes D"
+    unknown = "the material has no relaxation time tau for Deborah's number tau / D with the stroke duration D"
     needed = (
         f"it relaxes to within {RELAXED:.0%} in {settled:.3g} s, in strokes slower than {travel / settled:.3g} mm/s. "
-        "Take moduli that were measured as slowly as the part moves, or give the material a memory ([material.prony])"
+        "Use moduli measured at the speed of the part, or give relaxation times ([material.prony])"
     )
     if math.isinf(shortest):
-        words = f"{unknown}, and {UNSAID}. Were it the library's filled rubber, {needed}"
+        words = f"{unknown}, and {UNSAID}. The library's filled rubber as an example: {needed}"
         return Verdict(words=words, matters=None, numbers=numbers)
     ratio = relaxation.stiffness(ratios, FILLED_TIMES, shortest)
     numbers |= {"shortest stroke D [s]": shortest, "G(D) / G_inf of the library's filled rubber [-]": ratio}
     words = (
-        f"{unknown}. Were it the library's filled rubber, it would be {ratio:.3g} times as stiff after D = "
-        f"{shortest:.3g} s as in the long term; {needed}"
+        f"{unknown}. The library's filled rubber as an example: after D = {shortest:.3g} s it is {ratio:.3g} times as "
+        f"stiff as in the long term; {needed}"
     )
     return Verdict(words=words, matters=None, numbers=numbers)
 
@@ -100,17 +100,17 @@ def _stick_slip(scene: Scene) -> Verdict:
     turns = len({math.copysign(1.0, stroke.direction) for stroke in scene.program.cycle}) > 1
     numbers = {"elastic slip at most over shortest stroke [-]": slip / shortest}
     if not turns:
-        return Verdict(words="the sliding never turns round, so that all of the contact slides", matters=False)
+        return Verdict(words="the direction of sliding never changes, so that the whole contact slides", matters=False)
     matters = slip > shortest
-    words = f"the shortest stroke is {shortest:.3g} mm, and at most {slip:.2g} mm of it pass before the contact slides"
-    words += ": the scene tells the contact not to stick where it should" if matters else ""
+    words = f"the shortest stroke is {shortest:.3g} mm, and the contact slides after at most {slip:.2g} mm"
+    words += ": the scene forbids sticking (sticks = false) although the contact would stick" if matters else ""
     return Verdict(words=words, matters=matters, numbers=numbers)
 
 
 def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
-    """By the flash temperature of each strip as Jaeger's moving band, all heat into the counter-surface.
+    """By the flash temperature of Jaeger's moving band for each contact zone, all heat into the counter-surface.
 
-    The strips of one contact in one stroke are added up: a bound, as a strip warms its neighbours less than itself.
+    The sum over the zones of one contact in one stroke is an upper bound.
     """
     into = {"conductivity": assumed.counter_conductivity, "heat_capacity": assumed.counter_heat_capacity}
     groups: dict[tuple[str, int], list[Strip]] = {}
@@ -124,7 +124,7 @@ def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     starts = min(onset(partial(rise, group), heat.LIMIT, low=1e-3, high=1e7) for group in groups.values())
     numbers = {"speed from which the flash temperature exceeds 10 K [mm/s]": starts}
     grounds = (
-        "each strip a band of uniform heat mu p v that moves over the counter-surface, which takes all of it (Jaeger; "
+        "each zone as a band of uniform heat mu p v that moves over the counter-surface, which takes all heat (Jaeger; "
         f"rubber conducts {assumed.counter_conductivity / assumed.rubber_conductivity:.3g} times less)"
     )
     moving = [(group, speed) for group in groups.values() if (speed := group[0].stroke.speed) is not None]
@@ -141,11 +141,11 @@ def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
         f"frictional power [{unit}]": power,
     }
     matters: bool | None = found > heat.LIMIT
-    limit = f"above {heat.LIMIT:g} K rubber's stiffness, losses and friction shift, and this scene leaves it out"
+    limit = f"above {heat.LIMIT:g} K stiffness, losses and friction of rubber change, which this scene neglects"
     if not matters:
-        limit = f"below the {heat.LIMIT:g} K that shift rubber's stiffness, losses and friction"
+        limit = f"below the {heat.LIMIT:g} K that change stiffness, losses and friction of rubber"
     words = (
-        f"estimated +{found:.2g} K of flash temperature at most: {limit}. Hardest strip of {len(hottest)}: "
+        f"estimated +{found:.2g} K of flash temperature at most: {limit}. Highest pressure of {len(hottest)} zones: "
         f"{_where(strip)}, mu p v = {mu:.3g} x {strip.pressure:.3g} MPa x {speed:.4g} mm/s, {strip.width:.3g} mm wide; "
         f"{grounds}"
     )
@@ -153,14 +153,14 @@ def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
         names = {strip.contact.name for strip in strips}
         warm = max(warming(scene, [s for s in strips if s.contact.name == name], assumed) for name in names)
         numbers["warming of the counter-surface over the program if nothing cools it [K]"] = warm
-        words += f". Besides, {power:.2g} {unit} warm the counter-surface by {warm:.2g} K over the program, uncooled"
+        words += f". In addition, {power:.2g} {unit} heat the counter-surface by {warm:.2g} K without cooling"
         if not matters and found + warm > heat.LIMIT:
-            matters, words = None, f"{words}: what cools it decides, and no scene tells that"
+            matters, words = None, f"{words}: this depends on the cooling, which no scene gives"
     return Verdict(words=words, matters=matters, numbers=_finite(numbers))
 
 
 def _power(scene: Scene, groups: list[tuple[list[Strip], float]]) -> tuple[float, str]:
-    """Highest frictional power of a contact in a stroke, and its unit; of strips and their speeds."""
+    """Highest frictional power of a contact in a stroke, and its unit, from zones and their speeds."""
     powers = []
     for group, speed in groups:
         load = sum(s.load * (2 * math.pi * s.place[1] if scene.axisymmetric else 1.0) for s in group)
@@ -169,19 +169,19 @@ def _power(scene: Scene, groups: list[tuple[list[Strip], float]]) -> tuple[float
 
 
 def _adhesion(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
-    """By pull-off force over load of the strip with the highest pressure, as a clean, dry, smooth line contact."""
+    """By pull-off force over load of the zone with the highest pressure, as a clean, dry, smooth line contact."""
     strip, modulus, work = _main(strips), scene.part.material.plane_strain_modulus, assumed.work_of_adhesion
     radius = adhesion.hertz_radius(strip.load, strip.width / 2, modulus)
     pull = adhesion.line_pull_off(radius, modulus, work)
     share = pull / strip.load
     tabor = adhesion.tabor(radius, modulus, work, assumed.equilibrium_distance)
     words = (
-        f"clean, dry and smooth with {1e3 * work:g} J/m² it would withstand a pull of {share:.2g} of its load "
+        f"clean, dry and smooth with {1e3 * work:g} J/m² the pull-off force would be {share:.2g} of the load "
         f"({strip.load:.3g} N/mm, {_where(strip)}; Johnson, Kendall and Roberts, for lines Barquins; Tabor's number "
-        f"{tabor:.2g}); oil and roughness leave less"
+        f"{tabor:.2g}); oil and roughness reduce it"
     )
     much = share > SHARE
-    words += f". More than {SHARE:g}: it may matter if the contact is as clean as that" if much else ": negligible"
+    words += f". More than {SHARE:g}: it may matter if the contact is clean and dry" if much else ": negligible"
     numbers = {"pull-off force over load [-]": share, "Tabor's number [-]": tabor}
     return Verdict(words=words, matters=None if much else False, numbers=numbers)
 
@@ -194,22 +194,22 @@ def _inertia(scene: Scene, assumed: Assumed) -> Verdict:
     numbers = {"speed of shear waves [m/s]": 1e-3 * wave, "speed from which inertia counts [mm/s]": starts}
     speeds = [stroke.speed for stroke in scene.program.cycle if stroke.speed is not None]
     if not speeds:
-        words = f"{UNSAID}; inertia counts from {1e-3 * starts:.3g} m/s on"
+        words = f"{UNSAID}; inertia matters above {1e-3 * starts:.3g} m/s"
         return Verdict(words=words, matters=None, numbers=numbers)
     mach = inertia.mach_squared(max(speeds), modulus, density)
     turning = inertia.reversal(size, modulus, density, min(stroke.duration for stroke in scene.program.cycle))
     matters = mach > inertia.LIMIT or turning > inertia.SLOW
     words = (
-        f"rho v²/G = {mach:.2g} (counts from {inertia.LIMIT:g} on), and a shear wave crosses the section in "
-        f"{turning:.2g} of the shortest stroke (counts from {inertia.SLOW:g} on): "
-        f"{'it matters' if matters else 'negligible'}. Vibrations that friction itself excites are another matter"
+        f"rho v²/G = {mach:.2g} (limit {inertia.LIMIT:g}), and a shear wave crosses the section in "
+        f"{turning:.2g} of the shortest stroke (limit {inertia.SLOW:g}): "
+        f"{'it matters' if matters else 'negligible'}. Vibrations excited by friction are not included"
     )
     numbers |= {"rho v²/G [-]": mach, "time of a shear wave through the section over the shortest stroke [-]": turning}
     return Verdict(words=words, matters=matters, numbers=numbers)
 
 
 def _film(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
-    """By the film of a flooded soft line contact over the roughness, at the strip with the highest pressure."""
+    """By film thickness over roughness of a flooded soft line contact, for the zone with the highest pressure."""
     strip, modulus, oil = _main(strips), scene.part.material.plane_strain_modulus, assumed.oil_viscosity
     radius = adhesion.hertz_radius(strip.load, strip.width / 2, modulus)
 
@@ -222,7 +222,7 @@ def _film(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
         f"flooded with oil of {1e6 * oil:g} Pa s (Herrebrugh, soft line contact; {1e3 * assumed.roughness:g} µm rough)"
     )
     if strip.stroke.speed is None:
-        words = f"{UNSAID}. {grounds[0].upper()}{grounds[1:]}, a film would carry from {starts:.3g} mm/s on"
+        words = f"{UNSAID}. {grounds[0].upper()}{grounds[1:]}, a film would carry load above {starts:.3g} mm/s"
         return Verdict(words=words, matters=None, numbers=_finite(numbers))
     found = ratio(strip.stroke.speed)
     numbers |= {
@@ -235,12 +235,12 @@ def _film(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     if not carries:
         return Verdict(words=words, matters=False, numbers=_finite(numbers))
     if law is not None and (law.depends_on_speed or law.breaks):
-        words += ". The contact's friction law stands for it; its pressure and leakage are left out"
+        words += ". The friction law of the contact includes it; film pressure and leakage are neglected"
         return Verdict(words=words, matters=False, numbers=_finite(numbers))
     if scene.fluid is None:
-        words += ". Whether there is oil the scene does not tell; if so, friction and wear rate must stand for it"
+        words += ". The scene does not say whether there is oil; if so, friction and wear rate must include its effect"
         return Verdict(words=words, matters=None, numbers=_finite(numbers))
-    words += ". Friction and wear rate must stand for it: they should depend on speed or lubrication"
+    words += ". Friction and wear rate must include its effect: they should depend on speed or lubrication"
     return Verdict(words=words, matters=True, numbers=_finite(numbers))
 
 
@@ -249,7 +249,7 @@ def _friction(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     number = strip.pressure / scene.part.material.shear_modulus
     words = (
         f"mean pressure over G is {number:.2g} at {_where(strip)}: shear stress over G is that times mu, which is 0.05 "
-        f"to 0.3 with oil and up to above 1 dry; above {SHARE:g} friction bends the contact out of shape"
+        f"to 0.3 with oil and up to more than 1 dry; above {SHARE:g} friction changes the shape of the contact"
     )
     return Verdict(words=words, matters=True if number > SHARE else None, numbers={"mean pressure / G [-]": number})
 
@@ -257,16 +257,16 @@ def _friction(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
 def _wear(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     strip, way = _main(strips), scene.program.slid(scene.program.strokes)
     if way == 0:
-        return Verdict(words="the program slides nowhere", matters=False)
+        return Verdict(words="the program has no sliding", matters=False)
     rate = SHARE * strip.width / (strip.pressure * way)
     words = (
-        f"over {way:.4g} mm a wear rate of {rate:.2g} mm²/N makes the strip at {_where(strip)} as deep as {SHARE:g} of "
-        "its width, and the pressure another one"
+        f"over {way:.4g} mm a wear rate of {rate:.2g} mm²/N makes the zone at {_where(strip)} as deep as {SHARE:g} of "
+        "its width, which changes the pressure"
     )
     return Verdict(words=words, matters=None, numbers={"wear rate from which it counts [mm²/N]": rate})
 
 
 def _fluid(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     pressure = SHARE * _main(strips).peak
-    words = f"the scene seals nothing; a sealed pressure counts from {SHARE:g} of the highest contact pressure on"
+    words = f"the scene has no sealed fluid; its pressure matters above {SHARE:g} of the highest contact pressure"
     return Verdict(words=words, matters=None, numbers={"sealed pressure from which it counts [MPa]": pressure})

@@ -1,4 +1,4 @@
-"""What a pin on a plate leaves out, and whether that matters, from a guess of its contact."""
+"""Effects that a pin scene neglects, and whether they matter, from an estimate of its contact."""
 
 from __future__ import annotations
 
@@ -9,15 +9,15 @@ from ngwear.explanation.assumptions import Assumed
 from ngwear.explanation.verdict import Verdict, onset
 from ngwear.scene.pin_scene import Pin, PinScene
 
-WORN, TURNS = 0.01, 1000  # share of the sheet's thickness, and turns that wear it
-WARM = 1.0  # K of flash temperature from which on the warming by all turns before may count
+WORN, TURNS = 0.01, 1000  # share of the sheet's thickness, and turns that wear it: round numbers, stated in the verdict
+WARM = 1.0  # K of flash temperature from which on the warming by all turns before may count: a tenth of heat.LIMIT
 
 
 def left_out(scene: PinScene, assumed: Assumed) -> dict[str, Verdict]:
-    """Verdict on each effect that no pin scene has, with the contact a disc of uniform pressure."""
+    """Verdict on each effect that no pin scene has; the contact is a disc of uniform pressure."""
     return {
         "wear": _wear(scene.pin),
-        "stick-slip": Verdict(words="the pin slides steadily and never turns round", matters=False),
+        "stick-slip": Verdict(words="the pin slides steadily in one direction", matters=False),
         "heat": _heat(scene, assumed),
         "adhesion": _adhesion(scene.pin, assumed),
         "inertia": _inertia(scene, assumed),
@@ -30,14 +30,14 @@ def _pressure(pin: Pin) -> float:
 
 
 def _wear(pin: Pin) -> Verdict:
-    """The depth of a pass is k p 2 a in the track's middle."""
+    """By the depth of one pass in the middle of the track, 2 k p a."""
     rate = WORN * pin.thickness / (TURNS * _pressure(pin) * 2 * pin.contact_radius)
-    words = f"a wear rate of {rate:.2g} mm²/N takes {WORN:.0%} of the sheet's thickness in {TURNS} turns of the pin"
+    words = f"a wear rate of {rate:.2g} mm²/N removes {WORN:.0%} of the sheet's thickness in {TURNS} turns of the pin"
     return Verdict(words=words, matters=None, numbers={"wear rate from which it counts [mm²/N]": rate})
 
 
 def _heat(scene: PinScene, assumed: Assumed) -> Verdict:
-    """The disc moves over the rubber and stands on the ball; both get equally hot (Archard)."""
+    """By a disc of heat that moves over the rubber and rests on the ball; equal temperature of both (Archard)."""
     pin, speed = scene.pin, max(scene.speeds)
     law, radius = pin.friction_law, pin.contact_radius
     if law is None:
@@ -59,13 +59,15 @@ def _heat(scene: PinScene, assumed: Assumed) -> Verdict:
     matters: bool | None = found > heat.LIMIT
     words = (
         f"estimated +{found:.2g} K of flash temperature, {'above' if matters else 'below'} the {heat.LIMIT:g} K that "
-        "shift rubber's stiffness and losses: mu p v on a disc that moves over the rubber and stands on the steel "
-        "ball, both equally hot (Tian and Kennedy; Archard)"
+        "change stiffness and losses of rubber: mu p v on a disc that moves over the rubber and rests on the steel "
+        "ball, both at the same temperature (Tian and Kennedy; Archard)"
     )
     if not matters and found > WARM:
         matters = None
-        words += f". But {power:.2g} W at the fastest and the rubber's own losses warm pin and track turn by turn: "
-        words += "what cools them decides, and no scene tells that"
+        words += (
+            f". But {power:.2g} W at the highest speed and the losses in the rubber heat pin and track in every turn: "
+        )
+        words += "this depends on the cooling, which no scene gives"
     return Verdict(words=words, matters=matters, numbers={k: v for k, v in numbers.items() if math.isfinite(v)})
 
 
@@ -75,10 +77,12 @@ def _adhesion(pin: Pin, assumed: Assumed) -> Verdict:
     tabor = adhesion.tabor(pin.radius, modulus, assumed.work_of_adhesion, assumed.equilibrium_distance)
     much = pull > adhesion.LIMIT
     words = (
-        f"clean, dry and smooth with {1e3 * assumed.work_of_adhesion:g} J/m² the ball would withstand a pull of "
-        f"{pull:.2g} of its load (Johnson, Kendall and Roberts; Tabor's number {tabor:.2g})"
+        f"clean, dry and smooth with {1e3 * assumed.work_of_adhesion:g} J/m² the pull-off force would be "
+        f"{pull:.2g} of the load (Johnson, Kendall and Roberts; Tabor's number {tabor:.2g})"
     )
-    words += f". More than {adhesion.LIMIT:g}: it may matter if it is as clean as that" if much else ": negligible"
+    words += (
+        f". More than {adhesion.LIMIT:g}: it may matter if the contact is clean and dry" if much else ": negligible"
+    )
     numbers = {"pull-off force over load [-]": pull, "Tabor's number [-]": tabor}
     return Verdict(words=words, matters=None if much else False, numbers=numbers)
 
@@ -88,7 +92,7 @@ def _inertia(scene: PinScene, assumed: Assumed) -> Verdict:
     found = inertia.mach_squared(max(scene.speeds), modulus, density)
     wave = inertia.wave_speed(modulus, density)
     matters = found > inertia.LIMIT
-    words = f"rho v²/G = {found:.2g} at the fastest, with the long-term G; it counts from {inertia.LIMIT:g} on: "
+    words = f"rho v²/G = {found:.2g} at the highest speed, with the long-term G (limit {inertia.LIMIT:g}): "
     words += "it matters" if matters else "negligible"
     numbers = {
         "rho v²/G [-]": found,
@@ -108,8 +112,8 @@ def _film(scene: PinScene, assumed: Assumed) -> Verdict:
     carries = fast >= film.MIXED
     words = (
         f"flooded with oil of {1e6 * oil:g} Pa s and {1e3 * assumed.roughness:g} µm rough, film over roughness would "
-        f"be {slow:.2g} to {fast:.2g} (Hamrock and Dowson, soft contact): {film.regime(slow)} at the slowest, "
-        f"{film.regime(fast)} at the fastest. Whether there is oil the scene does not tell"
+        f"be {slow:.2g} to {fast:.2g} (Hamrock and Dowson, soft contact): {film.regime(slow)} at the lowest "
+        f"speed, {film.regime(fast)} at the highest. The scene does not say whether there is oil"
     )
     numbers = {
         "Hersey number eta v a / load at the fastest [-]": film.hersey(

@@ -1,4 +1,4 @@
-"""Relaxation of a rubber of which no relaxation time is known: how another rubber would behave in its place."""
+"""Relaxation of a Prony series: stiffness over time, and time of relaxation."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ def stiffness(ratios: Sequence[float], times: Sequence[float], time: float) -> f
     ratios, times : sequence of float
         gamma_i [-] and tau_i [s].
     time : float
-        t since the strain was put on [s].
+        Time t after a step of the strain [s].
     """
     return 1 + sum(g * math.exp(-time / tau) for g, tau in zip(ratios, times, strict=True))
 
 
 def relaxed_after(ratios: Sequence[float], times: Sequence[float], excess: float) -> float:
-    """Time after which the stiffness is less than ``excess`` above the long-term one [s]."""
+    """Time after which the stiffness exceeds the long-term one by less than ``excess``, relative [s]."""
     return onset(lambda t: -stiffness(ratios, times, t), -(1 + excess))

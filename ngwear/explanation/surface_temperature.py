@@ -1,4 +1,4 @@
-"""How warm a scene's counter-surfaces get as a whole if nothing cools them."""
+"""Heating of counter-surfaces over the program without cooling."""
 
 from __future__ import annotations
 
@@ -14,18 +14,19 @@ from ngwear.surfaces import Cylinder, Plane
 
 
 def warming(scene: Scene, strips: list[Strip], assumed: Assumed) -> float:
-    """Rise of a contact's counter-surface over the program if nothing cools it [K], all frictional heat into it.
+    """Temperature rise of a counter-surface over the program without cooling, with all frictional heat [K].
 
-    The heat is spread over what it reaches in that time: a shaft's or rod's section as far as its middle, a plane to
-    the same depth, along what the strokes rub and as far beyond. It is 0 for a plane that never turns round, which
-    comes in cold. Cooling by air, oil and housing is neglected: a bound.
+    The heat is spread over the volume that conduction reaches in that time: to the same depth below the surface (a
+    shaft or rod at most to its axis), and as far beyond the ends of the rubbed length. It is 0 for a plane that slides
+    in one direction only, because it enters the contact cold. Cooling by air, oil and housing is neglected: an upper
+    bound.
 
     Parameters
     ----------
     scene : Scene
         With a speed in every stroke.
     strips : list of Strip
-        Of one contact, in all kinds of stroke.
+        Zones of one contact in all kinds of stroke.
     assumed : Assumed
     """
     spec, program = strips[0].contact, scene.program
@@ -48,7 +49,7 @@ def warming(scene: Scene, strips: list[Strip], assumed: Assumed) -> float:
 
 
 def rubbed(scene: Scene, strips: list[Strip]) -> float:
-    """Frictional heat of one contact over the program [mJ, or mJ/mm], its pressure as it is when new."""
+    """Frictional heat of one contact over the program, with the pressure of the unworn part [mJ, or mJ/mm]."""
     program, law, total = scene.program, strips[0].contact.friction_law, 0.0
     end = program.slid(program.strokes)
     for stroke in program.cycle:
@@ -61,5 +62,5 @@ def rubbed(scene: Scene, strips: list[Strip]) -> float:
 
 
 def _ring(radius: float, depth: float) -> float:
-    """Area of a disc's rim of a depth [mm²]."""
+    """Area of the outer ring of a disc with this depth [mm²]."""
     return math.pi * (radius**2 - max(radius - depth, 0.0) ** 2)

@@ -1,4 +1,4 @@
-"""What ``explain`` and ``explain_pin`` found, as text."""
+"""The description of ``explain`` as text."""
 
 from __future__ import annotations
 
@@ -6,23 +6,23 @@ import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-WIDTH = 118
+WIDTH = 118  # characters: a terminal of 120
 BROUGHT = ("unknowns", "matrix entries", "memory [MB]")
-MATTERS = {True: "matters", False: "does not matter", None: "cannot be told from the scene"}
+MATTERS = {True: "matters", False: "does not matter", None: "cannot be judged from the scene"}
 
 
 def lines(found: Mapping[str, Any]) -> Iterator[str]:
-    """The lines of a description; each effect with what it brings, each absent one with its verdict and numbers."""
+    """Lines of a description: each effect with its cost, each neglected effect with its verdict and numbers."""
     for name, value in found.items():
         if name in BROUGHT:
             continue
         if name == "effects":
-            yield "effects, and what each brings on the first mesh (factors of the matrix come on top):"
+            yield "effects, and the cost of each on the first mesh (without the factors of the matrix):"
             for effect, words in value.items():
                 yield from _wrapped(f"{effect}: {words}", 2)
                 yield f"      {_brought(found, effect)}"
         elif name == "absent":
-            yield "whether what is left out would matter:"
+            yield "whether neglected effects matter:"
             for effect, verdict in value.items():
                 yield from _wrapped(f"{effect} {MATTERS[verdict['matters']]}: {verdict['verdict']}", 2)
                 yield from (f"      {_row(n, v)}" for n, v in verdict.items() if n not in ("verdict", "matters"))

@@ -1,4 +1,4 @@
-"""What is said of an effect that is left out."""
+"""Verdict on a neglected effect."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from typing import Any
 
 @dataclass(frozen=True, kw_only=True)
 class Verdict:
-    """Numbers and words about an absent effect.
+    """Text and numbers about a neglected effect.
 
     Parameters
     ----------
     words : str
-        The verdict.
+        The reason.
     matters : bool or None
-        Whether the scene should not leave it out; None if what the scene says cannot tell.
+        Whether the scene should include it; None if it cannot be judged from the scene.
     numbers : mapping of str to float
         Named ``"quantity [unit]"``.
     """
@@ -32,9 +32,9 @@ class Verdict:
 
 
 def onset(number: Callable[[float], float], limit: float, *, low: float = 1e-9, high: float = 1e12) -> float:
-    """Argument at which a rising function reaches a limit, by bisection of its logarithm to nine digits.
+    """Argument at which an increasing function reaches a limit, by bisection of its logarithm to nine digits.
 
-    Infinite if it is still below at ``high``; ``low`` if it is above already there.
+    Infinite if the function is below the limit at ``high``; ``low`` if it is above it there.
     """
     if number(high) < limit:
         return math.inf

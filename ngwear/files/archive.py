@@ -1,4 +1,4 @@
-"""One file of plain data: a zip of NumPy arrays that says what it is, in which version, and made by which ngwear."""
+"""A file of plain data: a zip of NumPy arrays with its format, format version and ngwear version."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ Members = dict[str, NDArray[Any]]
 
 @dataclass(frozen=True)
 class Format:
-    """What a kind of file is, and what to do with one that cannot be read.
+    """A kind of file, and the remedy if one cannot be read.
 
     Parameters
     ----------
     name : str
         Such as ``"checkpoint"``.
     version : int
-        Goes up with each change of what is stored.
+        Increased with each change of the stored data.
     remedy : str
-        For whoever has a damaged file, or one of another version.
+        Advice for a damaged file, or one of another version.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Format:
 
 
 def packed(content: Any, kind: Format, classes: Iterable[type] = ()) -> Members:
-    """What the file will hold.
+    """The members of the file.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def packed(content: Any, kind: Format, classes: Iterable[type] = ()) -> Members:
 
 
 def write(file: IO[bytes], members: Members) -> None:
-    """Write what is packed into an open file; ``numpy.load`` can read it, too."""
+    """Write the members to an open file; ``numpy.load`` can read it, too."""
     with zipfile.ZipFile(file, "w") as archive:
         for name, array in members.items():
             with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
@@ -64,12 +64,12 @@ def write(file: IO[bytes], members: Members) -> None:
 
 
 def read(path: Path, kind: Format, classes: Iterable[type] = ()) -> Any:
-    """Read a file again. It is never executed: what it holds becomes plain data and objects of the classes, or fails.
+    """Read a file. Nothing in it is executed: it gives only plain data and objects of the listed classes.
 
     Raises
     ------
     ResultError
-        If it is damaged, of another kind, or of another version: says what was found, and what to do.
+        If it is damaged, of another kind, or of another version; the message says the remedy.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -79,16 +79,16 @@ def read(path: Path, kind: Format, classes: Iterable[type] = ()) -> Any:
                 arrays = [_member(archive, VALUES.format(i)) for i in range(len(archive.namelist()) - 2)]
                 tree = json.loads(_member(archive, TREE).tobytes())
                 return Unpacker(arrays, classes).unpack(tree)
-    except Exception as error:  # what damaged bytes raise depends on where they are
+    except Exception as error:  # damaged bytes may raise any error
         found = f"there is no {error}" if isinstance(error, KeyError) else error
         raise ResultError(f"{path} cannot be read as a {kind.name} ({found}); {kind.remedy}") from error
     if found != f"ngwear {kind.name}":
-        raise ResultError(f"{path} is no {kind.name} of ngwear, but calls itself {found!r}; {kind.remedy}")
+        raise ResultError(f"{path} is not a {kind.name} of ngwear: its format is {found!r}; {kind.remedy}")
     raise other_version(path, kind, version, made_by)
 
 
 def other_version(path: Path, kind: Format, found: object, made_by: object) -> ResultError:
-    """What to tell of a file of an older or newer version."""
+    """The error for a file of an older or newer version."""
     return ResultError(
         f"{path} is a {kind.name} of version {found}, written by ngwear {made_by}; this is ngwear {VERSION}, which "
         f"reads version {kind.version}: {kind.remedy}, or take ngwear {made_by}"

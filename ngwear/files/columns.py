@@ -15,12 +15,12 @@ Array = NDArray[np.float64]
 
 
 def read_columns(path: Path | str, needed: Sequence[str], one_of: Sequence[str] = ()) -> dict[str, Array]:
-    """Read the columns ``needed`` and at least one of ``one_of``; lines that begin with # are left out.
+    """Read the columns ``needed`` and at least one of ``one_of``; lines that begin with # are skipped.
 
     Raises
     ------
     SceneError
-        For a file or a column that is missing, or a value that is no number.
+        If the file or a column is missing, or a value is not a number.
     """
     path = Path(path)
     if not path.is_file():

@@ -1,7 +1,7 @@
 """Names, columns and the layout of ``result.h5``.
 
-HDF5 takes a slash in a name for a path: "force x [N/mm]" is stored as "force x [N per mm]", and its attribute ``name``
-holds the name as it is in ``series.csv``.
+HDF5 reads a slash in a name as a path: "force x [N/mm]" is stored as "force x [N per mm]", and its attribute ``name``
+holds the name of the column in ``series.csv``.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from ngwear.errors import ResultError
 from ngwear.files.subnormal import without_subnormals
 from ngwear.files.version import VERSION
 
-MANY = 1000  # numbers; below, compression saves nothing
+MANY = 1000  # numbers; below, compression saves nothing: each chunk has an overhead
 LAYOUT = 2  # 1: as ngwear 0.1 wrote it, slashes in names and no attribute "layout"
 
 
 def write(file: IO[bytes], fill: Callable[[Any], None]) -> None:
-    """Write what ``fill`` puts into an HDF5 file. It is made in memory: HDF5 crashes on a disk that becomes full."""
+    """Write an HDF5 file that ``fill`` fills. It is built in memory, because HDF5 crashes on a full disk."""
     import h5py
 
     memory = io.BytesIO()
@@ -33,18 +33,18 @@ def write(file: IO[bytes], fill: Callable[[Any], None]) -> None:
 
 
 def stored_name(name: str) -> str:
-    """The name without what HDF5 does not take for a part of it."""
+    """The name in the file, without characters that HDF5 does not allow."""
     kept = name.replace("/", " per ")
     return kept if kept.strip(".") else f"'{kept}'"
 
 
 def name_of(item: Any) -> str:
-    """Name of a dataset or group as it was given."""
+    """Original name of a dataset or group."""
     return str(item.attrs.get("name", item.name.rsplit("/", 1)[-1]))
 
 
 def put(group: Any, name: str, values: Any, *, compressed: bool = False) -> None:
-    """Store values under a name; compressed where they are many."""
+    """Store values under a name; ``compressed`` applies to large arrays only."""
     stored = _free(group, stored_name(name))
     data = without_subnormals(np.asarray(values))
     how = {"compression": "gzip", "compression_opts": 4, "shuffle": True} if compressed and data.size >= MANY else {}
@@ -52,7 +52,7 @@ def put(group: Any, name: str, values: Any, *, compressed: bool = False) -> None
 
 
 def subgroup(group: Any, name: str) -> Any:
-    """A new group within one."""
+    """Create a group within a group."""
     stored = _free(group, stored_name(name))
     made = group.create_group(stored)
     _note(made, name, stored)
@@ -81,13 +81,13 @@ def put_series(h5: Any, rows: list[dict[str, Any]]) -> None:
 
 
 def get_series(h5: Any) -> dict[str, NDArray[Any]]:
-    """The columns again, by their names in ``series.csv``."""
+    """Read the columns, by their names in ``series.csv``."""
     series = {name_of(item): item[()] for item in h5["series"].values()}
     return {name: values.astype(str) if values.dtype.kind in "OS" else values for name, values in series.items()}
 
 
 def mark(h5: Any, scene: str) -> None:
-    """Note whose file it is."""
+    """Write ngwear version, layout and scene name into a file."""
     h5.attrs["ngwear"], h5.attrs["layout"], h5.attrs["scene"] = VERSION, LAYOUT, scene
 
 
@@ -97,9 +97,9 @@ def require_layout(h5: Any, file: Path) -> None:
     Raises
     ------
     ResultError
-        Says which it has, and what to do.
+        If the layout differs; the message says the remedy.
     KeyError
-        If it is none of ngwear.
+        If the file is not of ngwear.
     """
     made_by, layout = str(h5.attrs["ngwear"]), int(h5.attrs.get("layout", 1))
     if layout != LAYOUT:

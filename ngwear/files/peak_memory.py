@@ -1,4 +1,4 @@
-"""How much memory this process has taken at most."""
+"""Peak memory of this process."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from pathlib import Path
 
 
 def peak_memory() -> float:
-    """Peak resident memory of this process [MB]; on Linux its own, without what the one before it has left."""
+    """Peak resident memory of this process [MB]; on Linux without that of its parent process."""
     if sys.platform == "win32":
         import psutil
 

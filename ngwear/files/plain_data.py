@@ -1,7 +1,7 @@
-"""Plain data as text and arrays, and back, each bit as it was.
+"""Convert plain data to JSON text and arrays, and back, exactly.
 
-Plain are numbers, text, None, lists, tuples, dicts, NumPy arrays, and objects of classes that both sides list by name.
-What is read can make nothing else: no name in a file is ever imported or called.
+Plain data are numbers, text, None, lists, tuples, dicts, NumPy arrays, and objects of listed classes. A file cannot
+create other objects: no name in a file is imported or called.
 """
 
 from __future__ import annotations
@@ -19,31 +19,29 @@ from ngwear.errors import ResultError
 AnyArray = NDArray[Any]
 AS_THEY_ARE = (type(None), bool, int, float, str)
 KINDS = "biufcSUmM"  # of arrays: whatever has no Python objects in it
-SHORT = 8  # a list of numbers with fewer stays text
+SHORT = 8  # a list of numbers with fewer stays text: an array has a header of 128 bytes
 LARGEST = 2**63  # whole numbers from here on stay text
 
 
 @runtime_checkable
 class Storable(Protocol):
-    """An object that says itself what of it is stored; dataclasses need not, all of their fields are."""
+    """An object that defines its stored data itself; dataclasses store all of their fields."""
 
     def to_data(self) -> dict[str, Any]:
-        """What ``from_data`` makes the same object of."""
-        ...
+        """The data from which ``from_data`` restores the object."""
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> Self:
-        """The object again."""
-        ...
+        """Restore the object."""
 
 
 def by_name(classes: Iterable[type]) -> dict[str, type]:
-    """The classes by the names that they have in a file.
+    """The classes by their names in a file.
 
     Raises
     ------
     TypeError
-        If one is no dataclass, no enumeration and not ``Storable``, or two have the same name.
+        If a class is not a dataclass, an enumeration or ``Storable``, or two have the same name.
     """
     named: dict[str, type] = {}
     for cls in classes:
@@ -55,31 +53,31 @@ def by_name(classes: Iterable[type]) -> dict[str, type]:
 
 
 class Packer:
-    """Turn values into what JSON can hold, and their arrays into a few long ones, one for each type of number.
+    """Converts values to JSON data, and their arrays to a few long arrays, one for each number type.
 
     Parameters
     ----------
     classes : iterable of type
-        Of the objects that there may be.
+        Classes of objects that may occur.
     """
 
     def __init__(self, classes: Iterable[type] = ()) -> None:
         self._names = {cls: name for name, cls in by_name(classes).items()}
         self._pieces: dict[np.dtype[Any], list[AnyArray]] = {}
         self._sizes: dict[np.dtype[Any], int] = {}
-        self._done: dict[int, tuple[AnyArray, list[Any]]] = {}  # the array, too, or another one may get its id
+        self._done: dict[int, tuple[AnyArray, list[Any]]] = {}  # keeps the array, so that its id stays unique
 
     def arrays(self) -> list[AnyArray]:
-        """What all values packed so far have in arrays."""
+        """The long arrays of all values packed so far."""
         return [np.concatenate(pieces, dtype=kind) for kind, pieces in self._pieces.items()]
 
     def pack(self, value: Any) -> Any:
-        """What JSON holds of a value.
+        """Convert a value to JSON data.
 
         Raises
         ------
         ResultError
-            If it is not plain, or an object of a class that is not listed.
+            If the value is not plain data, or an object of a class that is not listed.
         """
         kind = type(value)
         if kind in AS_THEY_ARE:
@@ -122,7 +120,7 @@ class Packer:
         return [self.pack(value) for value in values]
 
     def _put(self, array: AnyArray) -> list[Any]:
-        """Where it is: which of the long arrays, the first number there, shape, order in memory."""
+        """Store an array; return number of the long array, first index, shape and memory order."""
         if id(array) in self._done:
             return self._done[id(array)][1]
         pieces = self._pieces.setdefault(array.dtype, [])
@@ -136,14 +134,14 @@ class Packer:
 
 
 class Unpacker:
-    """Turn what ``Packer`` has made into the values again.
+    """Restores values from the data of a ``Packer``.
 
     Parameters
     ----------
     arrays : iterable of array
-        The long ones, in their order.
+        The long arrays, in their order.
     classes : iterable of type
-        The only ones of which objects are made.
+        Classes of objects that may be created.
     """
 
     def __init__(self, arrays: Iterable[AnyArray], classes: Iterable[type] = ()) -> None:
@@ -152,12 +150,12 @@ class Unpacker:
         self._done: dict[tuple[Any, ...], AnyArray] = {}
 
     def unpack(self, packed: Any) -> Any:
-        """The value.
+        """Restore a value.
 
         Raises
         ------
         ValueError, KeyError, TypeError, AttributeError
-            If nothing that ``Packer`` makes looks like this, or another version of a class has been stored.
+            If these are not data of a ``Packer``, or another version of a class has been stored.
         """
         if type(packed) in AS_THEY_ARE:
             return packed
@@ -200,7 +198,7 @@ class Unpacker:
         wanted = [f.name for f in fields(cls)]
         if set(stored) != set(wanted):
             raise ValueError(f"the fields of its {name} are {sorted(stored)}, not {sorted(wanted)}")
-        made = object.__new__(cls)  # as it was: its constructor may round, order or work out anew
+        made = object.__new__(cls)  # without its constructor, which may change values
         for key in wanted:
             object.__setattr__(made, key, stored[key])
         return made

@@ -1,4 +1,4 @@
-"""A folder of results whose files are replaced as a whole, so that a kill leaves the last good ones."""
+"""Result folder; its files are replaced as a whole, so that an interruption leaves complete files."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ from ngwear.files.subnormal import without_subnormals
 from ngwear.files.version import VERSION
 
 SERIES, FIELDS, SUMMARY, CHECKPOINT = "series.csv", "result.h5", "summary.json", "checkpoint.npz"
-OLD_CHECKPOINT = "checkpoint.pkl"  # of ngwear 0.1: a file that can run any program, which is not read any more
+OLD_CHECKPOINT = "checkpoint.pkl"  # of ngwear 0.1; not read, because a pickle can run any program
 COMPLETED, GAVE_UP = "completed", "gave up"
 
 
 class OutFolder:
-    """A run's folder.
+    """The folder of a run.
 
     Parameters
     ----------
     path : Path
     begun : str
-        Name of what stands in it once a run has begun.
+        Name of the file that shows that the folder holds a run.
     resume : bool
-        Whether a run that has begun may go on.
+        Whether a run in the folder may be continued.
 
     Raises
     ------
@@ -44,10 +44,10 @@ class OutFolder:
         if begun == CHECKPOINT and (self.path / OLD_CHECKPOINT).exists():
             raise ResultError(
                 f"{self.path} holds a run of ngwear 0.1 ({OLD_CHECKPOINT}); this is ngwear {VERSION}, which cannot "
-                "go on with it: run the scene anew in another folder, or finish it with ngwear 0.1"
+                "continue it: run the scene again in another folder, or finish it with ngwear 0.1"
             )
         if not resume and (self.path / begun).exists():
-            raise ResultError(f"{self.path} already holds a run: go on with --resume, or give another folder")
+            raise ResultError(f"{self.path} already holds a run: continue it with --resume, or give another folder")
         try:
             self.path.mkdir(parents=True, exist_ok=True)
         except OSError as error:
@@ -56,7 +56,7 @@ class OutFolder:
             raise ResultError(f"{self.path} cannot be written to: no permission")
 
     def replace(self, name: str, write: Callable[[IO[bytes]], Any]) -> None:
-        """Write a file beside the old one, then put it in its place."""
+        """Write a temporary file, then replace the old one."""
         temporary = self.path / f".{name}.{secrets.token_hex(4)}"
         try:
             try:
@@ -71,15 +71,15 @@ class OutFolder:
         except OSError as error:
             raise ResultError(
                 f"{self.path / name} cannot be written: {error.strerror or error}; the last saved state is kept: "
-                "free some space or permission and go on with --resume"
+                "free some disk space or correct the permission, then continue with --resume"
             ) from error
 
     def write_series(self, rows: list[dict[str, Any]]) -> None:
-        """One line a row, columns named ``"quantity [unit]"``."""
+        """Write ``series.csv``: one line for each row, columns named ``"quantity [unit]"``."""
         self.write_table(SERIES, rows)
 
     def write_table(self, name: str, rows: list[dict[str, Any]]) -> None:
-        """One line a row, with the keys of the first one as columns."""
+        """Write a CSV file: one line for each row; the keys of the first row are the columns."""
         text = io.StringIO()
         if rows:
             writer = csv.DictWriter(text, fieldnames=list(rows[0]), lineterminator="\n")
@@ -88,12 +88,12 @@ class OutFolder:
         self.replace(name, lambda file: file.write(text.getvalue().encode()))
 
     def write_json(self, name: str, content: Any) -> None:
-        """Numbers, text, lists and dicts as JSON."""
+        """Write numbers, text, lists and dicts as JSON."""
         text = json.dumps(without_subnormals(content), indent=2) + "\n"
         self.replace(name, lambda file: file.write(text.encode()))
 
     def clear(self) -> None:
-        """Clear away what a kill has left half-written."""
+        """Remove temporary files of an interrupted process."""
         for left in self.path.glob(".*.*"):
             if left.name.startswith(tuple(f".{name}." for name in (SERIES, FIELDS, SUMMARY, CHECKPOINT))):
                 left.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""Numbers below the smallest normal one: many programs read them slowly, as 0, or not at all."""
+"""Replace subnormal numbers by 0: many programs read them slowly, as 0, or not at all."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ SMALLEST = float(np.finfo(float).tiny)  # 2.2e-308
 
 
 def without_subnormals(value: Any) -> Any:
-    """The same numbers, text, lists, tuples, dicts or array, with 0 for each number between 0 and ``SMALLEST``."""
+    """The same value with 0 for each number between 0 and ``SMALLEST``; also in lists, tuples, dicts and arrays."""
     if isinstance(value, float):
         return 0.0 if 0.0 < abs(value) < SMALLEST else value
     if isinstance(value, dict):

@@ -1,3 +1,3 @@
-"""The version of this program: what its files say that they were written by."""
+"""The version of ngwear, which is also written into its files."""
 
 VERSION = "0.2.0"

@@ -1,1 +1,1 @@
-"""The loop: mount, then equilibrium, wear, new outline and new mesh, stroke after stroke, to a run's end."""
+"""The loop of a run: mounting, then for each stroke equilibrium, wear, new outline and, if needed, a new mesh."""

@@ -1,4 +1,4 @@
-"""What a run goes on from once it has been stopped: its state and its records, written whole after each step."""
+"""Checkpoint of a run: its state and its records, written after each step, to continue a stopped run."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ PLAIN = (
 
 
 def classes(scene: Scene) -> tuple[type, ...]:
-    """Of the objects that a checkpoint of the scene holds; what it does not list is not even imported."""
+    """Classes of the objects in a checkpoint of the scene; modules that the scene does not need are not imported."""
     if scene.deactivation is not None:
         from ngwear.geometry.element_body import ElementBody
 
@@ -61,7 +61,7 @@ def save(folder: Folder, state: State, recorder: Recorder) -> None:
 
 
 def load(folder: Folder, scene: Scene) -> tuple[State, Recorder] | None:
-    """State and records of the run to go on with, or None if it has not begun.
+    """State and records of the run to continue; None if the folder has no checkpoint.
 
     Raises
     ------
@@ -75,6 +75,6 @@ def load(folder: Folder, scene: Scene) -> tuple[State, Recorder] | None:
     try:
         if content["scene"] == folder.scene_hash:
             return State.from_data(content["state"], scene), Recorder.from_data(content["recorder"], scene)
-    except Exception as error:  # what data that do not fit together raise depends on where they do not
+    except Exception as error:  # inconsistent data may raise any error
         raise ResultError(f"{file} cannot be read as a checkpoint ({error}); {FORMAT.remedy}") from error
-    raise ResultError(f"{folder.path} holds a run of another scene (or of a changed one): give another folder")
+    raise ResultError(f"{folder.path} holds a run of another scene, or the scene was changed: give another folder")

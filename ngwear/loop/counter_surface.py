@@ -1,4 +1,4 @@
-"""Counter-surfaces that wear in a scene: where each stands in a stroke, and what the stroke takes off it."""
+"""Counter-surfaces that wear: their position in a stroke, and their loss in it."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ Counters = dict[str, WornProfile]
 
 
 def ways(program: Program, index: int, sliding: Strokes) -> Array:
-    """How far surfaces have moved along themselves at the start and the end of each stroke of a kind [mm].
+    """Position of the surfaces along themselves at start and end of each stroke of a kind [mm].
 
-    Shape (n, 2); strokes that begin and end at the same places every time stand in one row.
+    Shape (n, 2); one row if every stroke of the kind starts and ends at the same place.
     """
     moves = [math.copysign(stroke.travel, stroke.direction) for stroke in program.cycle]
     start, net = sum(moves[:index]), sum(moves)
@@ -31,7 +31,7 @@ def ways(program: Program, index: int, sliding: Strokes) -> Array:
 
 
 def place(stage: Stage, counters: Counters, index: int, sliding: Strokes) -> None:
-    """Let the surfaces stand as halfway through the first of the strokes, as worn as they are."""
+    """Put the worn surfaces where they are halfway through the first of the strokes."""
     for name, counter in counters.items():
         contact = stage.contacts[name]
         contact.counter = counter
@@ -39,9 +39,9 @@ def place(stage: Stage, counters: Counters, index: int, sliding: Strokes) -> Non
 
 
 def worn(stage: Stage, counters: Counters, index: int, sliding: Strokes, shares: dict[str, Array]) -> Counters:
-    """The surfaces after the strokes: each of their points loses ``k2 int p dx`` over the places that it passes.
+    """The surfaces after the strokes: each of their points loses ``k2 int p dx`` over the nodes that it passes.
 
-    Where a contact's nodes slip only a share of the way, the loss is that share of it.
+    ``shares`` are slip over travel of a contact's nodes [-]; the loss is multiplied by them.
     """
     passes = ways(stage.scene.program, index, sliding)
     after = {}

@@ -1,4 +1,4 @@
-"""How the laws of friction and wear drift as a scene slides on, and how far a jump may go meanwhile."""
+"""Change of friction and wear laws with the sliding distance, and the longest cycle jump that it allows."""
 
 from __future__ import annotations
 
@@ -8,17 +8,18 @@ from ngwear.laws import Curve
 from ngwear.scene.contact import Contact
 from ngwear.scene.scene import Scene
 
-CHANGE, MOST_CHANGE = 5.0, 0.5  # times the wear error: of a law in a jump, over its highest value in the scene
+# Settled on starving lubrication (``verify lubrication error_estimates``); coarser runs show what this errs by.
+CHANGE, MOST_CHANGE = 5.0, 0.5  # times the wear error, and most: of a law in a jump, over its highest value
 LAG = 0.5  # times the wear error: of the friction that a jump uses behind its mean over the jump
 
 
 def steady_cycles(scene: Scene, done: int, most: int) -> int:
-    """Cycles, from one to ``most``, that a step after ``done`` strokes may take.
+    """Number of cycles, from one to ``most``, of a step after ``done`` strokes.
 
-    In a step of several cycles no law may change by more than five times ``Accuracy.wear_error`` of its highest value
-    in the scene, nor by more than half of that; and friction, which is taken from the middle of the step, may miss its
-    mean by no more than half the wear error. So a jump passes over no phase of a law unseen, and hardly over a bend,
-    whatever the error of the worn area allows; and a run with longer jumps shows what that errs by.
+    In a step of several cycles no law may change by more than five times ``Accuracy.wear_error`` of its maximum in the
+    scene, nor by more than half of that maximum. Friction is taken from the middle of the step; it may differ from its
+    mean over the step by half of ``wear_error``. So no jump passes over a phase of a law. A coarser run, with longer
+    jumps, shows the error.
     """
     start, kinds = scene.program.slid(done), len(scene.program.cycle)
     allowed, refused = 1, most + 1
@@ -32,7 +33,7 @@ def steady_cycles(scene: Scene, done: int, most: int) -> int:
 
 
 def friction_range(scene: Scene, contact: Contact) -> tuple[float, float]:
-    """Lowest and highest friction coefficient that the scene meets [-], under the lightest pressure."""
+    """Smallest and largest friction coefficient over the program [-], at zero pressure."""
     last = scene.program.slid(scene.program.strokes)
     found = [curve.extremes(0.0, last) for curve in _friction(scene, contact)]
     return min(low for low, _ in found), max(high for _, high in found)
@@ -54,7 +55,7 @@ def _is_steady(scene: Scene, start: float, end: float) -> bool:
 
 
 def _friction(scene: Scene, contact: Contact) -> Iterator[Curve]:
-    """The contact's friction over distance, at the speed of each kind of stroke."""
+    """Friction over sliding distance, at the speed of each stroke of the cycle."""
     law = contact.friction_law
     if law is not None:
         for speed in {stroke.speed for stroke in scene.program.cycle}:

@@ -1,4 +1,4 @@
-"""The loop's part in deactivating elements: tear what bears too much, move the surface, filter what is distorted."""
+"""Deactivation of elements in the loop: tearing by damage, wear of the surface nodes, filter of distorted elements."""
 
 from __future__ import annotations
 
@@ -27,11 +27,12 @@ Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
 IDENTITY = np.array([1.0, 0.0, 0.0, 1.0, 0.0, 0.0])
+# Thinner elements fold under load; settled on the torn seal (``verify torn_seal``). No area is lost by it.
 THINNEST = 0.2  # of an element's side: how near a surface node comes to the one beneath before both become one
 
 
 def element_body(scene: Scene) -> ElementBody:
-    """The section of a scene that deactivates elements, meshed in layers below the edges that wear.
+    """Mesh the section of a scene that deactivates elements, in layers below the edges that wear.
 
     Raises
     ------
@@ -47,24 +48,24 @@ def element_body(scene: Scene) -> ElementBody:
 
 
 def _asked(scene: Scene) -> Deactivation:
-    """What a scene says of losing elements; SceneError if it says nothing."""
+    """The settings of deactivation; SceneError without them."""
     if scene.deactivation is None:
-        raise SceneError("deactivation", None, "is missing: the scene says of no element how it is lost")
+        raise SceneError("deactivation", None, "is missing: give the table [deactivation]")
     return scene.deactivation
 
 
 def _criterion(scene: Scene) -> Criterion:
-    """What tears its elements; SceneError if nothing does."""
+    """The damage criterion; SceneError without one."""
     damage = _asked(scene).damage
     if damage is None:
-        raise SceneError("deactivation.damage", None, "is missing: nothing tears an element")
+        raise SceneError("deactivation.damage", None, "is missing: give a damage criterion")
     return damage
 
 
 def stresses(stage: Stage) -> Stresses:
-    """Mean stresses of the living elements in the present state, in the mesh's order.
+    """Mean Cauchy stresses of the active elements in the present state, in the order of the mesh.
 
-    The highest ones grow without bound where an element beside has been lost: one loss would go through the section.
+    Means, because the peak stress beside a lost element is singular: one loss would then cut through the section.
     """
     problem = stage.problem
     points = problem.points
@@ -80,7 +81,7 @@ def stresses(stage: Stage) -> Stresses:
 
 
 def loaded(stage: Stage) -> dict[str, Array]:
-    """Displacement of the points and mean stresses of the elements in the present state; nan where they are lost."""
+    """Displacement of the points and mean stresses of the elements; nan at lost elements."""
     body = elements(stage.body)
     cells = body.cells
     displacement, stress = np.full((len(cells.points), 2), np.nan), np.full((len(cells.fate), 3), np.nan)
@@ -91,7 +92,7 @@ def loaded(stage: Stage) -> dict[str, Array]:
 
 
 def exhaustion(state: State, repeats: int) -> Array:
-    """How much of what it bears each element of the layers is under after so many such cycles; 0 where it is lost."""
+    """Damage over its critical value of each element in the layers after ``repeats`` cycles [-]; 0 if it is lost."""
     stage, body = state.stage, elements(state.stage.body)
     cells, criterion = body.cells, _criterion(stage.scene)
     out = np.zeros(len(cells.fate))
@@ -102,7 +103,7 @@ def exhaustion(state: State, repeats: int) -> Array:
 
 
 def _usage(stage: Stage) -> Array:
-    """How much of what it bears each living element is under, in the mesh's order; of fatigue, what a cycle uses up."""
+    """Damage over its critical value of each active element, in the order of the mesh [-]; for fatigue, per cycle."""
     criterion, found = _criterion(stage.scene), stresses(stage)
     if criterion.length is not None:
         body = elements(stage.body)
@@ -112,7 +113,7 @@ def _usage(stage: Stage) -> Array:
 
 
 def _near_contact(stage: Stage) -> Mask:
-    """Which elements lie within reach of a contact that wears and carries load."""
+    """Mask of the elements within ``Deactivation.reach`` of a contact that wears and carries load."""
     cells, reach = elements(stage.body).now, _asked(stage.scene).reach
     if reach is None:
         return np.ones(len(cells.fate), dtype=bool)
@@ -125,12 +126,12 @@ def _near_contact(stage: Stage) -> Mask:
 
 
 def begin(state: State) -> None:
-    """Refuse rubber that tears while it is mounted; no element has used up anything of its life yet.
+    """Start with undamaged elements; refuse a part that tears while it is mounted.
 
     Raises
     ------
     SceneError
-        With the place where the mounted part bears most.
+        With the place of the largest damage in the mounted part.
     """
     cells, damage = elements(state.stage.body).cells, _asked(state.stage.scene).damage
     if damage is None:
@@ -143,18 +144,18 @@ def begin(state: State) -> None:
         used[worst] < 1.0,
         "deactivation.damage.critical",
         damage.critical,
-        f"the part would tear while it is fitted, at ({x:.3f}, {y:.3f}) mm: there the {damage.name} reaches "
-        f"{used[worst]:.3g} of what it bears; mount it with less force or interference, or take a stronger rubber",
+        f"the part would tear while it is mounted, at ({x:.3f}, {y:.3f}) mm: there the {damage.name} reaches "
+        f"{used[worst]:.3g} of the critical value; mount it with less force or interference, or take a stronger rubber",
     )
 
 
 def tear(state: State, outline: Outline, repeats: int) -> bool:
-    """Deactivate what the present state tears, from the outline as it was before the solve; return whether any.
+    """Deactivate the elements that the present state tears, on the outline before the solve; return whether any.
 
     Raises
     ------
     GeometryError
-        If nothing is left, or the section is cut in two.
+        If no element is left, or the section is cut in two.
     """
     if _asked(state.stage.scene).damage is None:
         return False
@@ -168,7 +169,7 @@ def tear(state: State, outline: Outline, repeats: int) -> bool:
 
 
 def tire(state: State, repeats: int, *, last: bool) -> None:
-    """Note how the accepted stroke has strained the elements, of a criterion that adds up over cycles."""
+    """Add the damage of the accepted stroke, for a criterion that accumulates over cycles."""
     damage = _asked(state.stage.scene).damage
     if damage is None or not damage.accumulates:
         return
@@ -180,13 +181,13 @@ def tire(state: State, repeats: int, *, last: bool) -> None:
 
 
 def lose(state: State, cells: Cells, dead: Mask, fate: Fate) -> None:
-    """Take elements out of the section, book their areas by cause, and go on with what is left."""
+    """Deactivate elements, add their areas to the ledger by cause, and set the scene up on the remaining ones."""
     left = booked(state, cells, dead, fate)
     go_on(state, left)
 
 
 def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
-    """The section without some elements, their areas in the book of the state."""
+    """The section without some elements; their areas are added to the ledger of the state."""
     scene = state.stage.scene
     touching = {edge for contact in scene.contacts for edge in contact.edges}
     bonded = tuple(edge for support in scene.supports for edge in support.edges if edge not in touching)
@@ -199,24 +200,24 @@ def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
 
 
 def go_on(state: State, cells: Cells) -> None:
-    """Set the scene up on the elements that are left; states are kept, as first guesses."""
+    """Set the scene up on the remaining elements; the states are kept as first guesses."""
     old = state.stage
     try:
         stage = Stage(old.scene, ElementBody(cells))
     except MeshError as error:
-        raise GeometryError(f"what is left of the section is held or loaded by nothing: {error}") from None
+        raise GeometryError(f"the remaining section has no support or no load: {error}") from None
     adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
 
 
 def follow(state: State, outline: Outline, points: Array) -> None:
-    """Let the surface nodes go from the outline to worn places, shape (n, 2), and filter what is then too distorted.
+    """Move the surface nodes from the outline to worn places, shape (n, 2) [mm]; deactivate distorted elements.
 
     Raises
     ------
     MeshError
-        If an element would turn inside out and the scene has no filter.
+        If an element would be inverted and the scene has no filter.
     GeometryError
-        If nothing is left, or the section is cut in two.
+        If no element is left, or the section is cut in two.
     """
     body, sieve = elements(state.stage.body), _asked(state.stage.scene).distortion
     cells = moved = body.cells.moved(points)
@@ -225,9 +226,9 @@ def follow(state: State, outline: Outline, points: Array) -> None:
     while len(reached := _reached(cells, went)):
         cells = cells.merged(reached)
     if cells is not moved:
-        state.ledger.lost[Fate.WORN] += worn - cells.area  # by walls, of pits or holes, whose ends were merged
+        state.ledger.lost[Fate.WORN] += worn - cells.area  # area of pits and holes whose walls were merged
     distorted = np.zeros(len(cells.fate), dtype=bool) if sieve is None else sieve.finds(cells)
-    if distorted.any() or cells is not moved:  # merged points may lie at a hole: what is left there hangs on one point
+    if distorted.any() or cells is not moved:  # at a hole, elements may now hang on one merged point
         cells = booked(state, cells, distorted, Fate.DISTORTED)
     if np.array_equal(cells.corners, body.cells.corners) and np.array_equal(cells.fate, body.cells.fate):
         body.move_to(replace(outline, points=points))
@@ -236,14 +237,14 @@ def follow(state: State, outline: Outline, points: Array) -> None:
 
 
 def _reached(cells: Cells, went: dict[int, float]) -> NDArray[np.intp]:
-    """Points of the outline that have come near the next ones on their columns, or passed them on the way they went."""
+    """Points of the outline that have come close to the next point of their column, or have passed it."""
     rim = cells.rim
     place, beneath = cells.points[rim], cells.below[rim]
     chord = np.roll(place, -1, axis=0) - np.roll(place, 1, axis=0)
     normal = np.stack([-chord[:, 1], chord[:, 0]], axis=1) / np.linalg.norm(chord, axis=1)[:, None]
     left = ((cells.points[beneath] - place) * normal).sum(axis=1)
     near = THINNEST * np.sqrt(np.median(cells.made[cells.layers]))
-    # A column along the outline, in a wall, is not worn; one that points outwards has been passed, or hangs over.
+    # A column parallel to the outline, in a wall, does not wear.
     across = np.abs((cells.inward() * normal).sum(axis=1)) > STEEPEST
     passed = left >= -np.array([went[point] for point in rim.tolist()])
     return rim[(beneath >= 0) & across & passed & (left < near)]

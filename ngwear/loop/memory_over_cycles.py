@@ -1,4 +1,4 @@
-"""What rubber remembers from stroke to stroke, and through jumps of many cycles."""
+"""Viscoelastic memory of rubber from stroke to stroke, and over jumps of many cycles."""
 
 from __future__ import annotations
 
@@ -20,31 +20,31 @@ STORED = ("background", "durations", "ratios", "times", "relaxed", "stresses")
 
 
 class CycleMemory:
-    """Generalised Maxwell arms under strokes, on a background of the unworn section.
+    """Generalised Maxwell arms in cyclic sliding, stored on a background mesh of the unworn section.
 
-    Along a smooth surface the strain stands still during a stroke and steps at the reversal. What an arm has relaxed,
+    On a smooth surface the strain is constant during a stroke and steps at the reversal. The relaxed part of an arm,
     ``q = gamma S - Q``, is continuous there and follows ``q' = (gamma S_k - q) / tau`` during stroke k, of duration D.
-    Wear follows the pressure's mean over the stroke, so that one solve with the arms' mean overstress does:
+    Wear depends on the mean pressure over the stroke: so one solve is done with the mean overstress of the arms:
 
         Qbar_k = sum_i a_i (gamma_i S_k - q_i,start),   a_i = (1 - exp(-D / tau_i)) tau_i / D.
 
-    In a step of many cycles the stroke that is solved is the last of its kind. q at its start is an affine map of q at
-    the step's start and of the stresses S_j of all kinds of stroke; the part with S_k itself is taken implicitly, the
-    others' S_j as they were solved last.
+    In a step of many cycles the stroke that is solved is the last of its kind. q at its start is an affine function of
+    q at the start of the step and of the stresses S_j of all strokes of the cycle. The part with S_k is implicit; the
+    other S_j are those of their last solve.
 
-    Neglected: that strains creep during a stroke, under the fluid's pressure above all (``ngwear verify stroke_memory``
-    measures it, a run states it by ``ngwear.loop.time_step_error``, and ``Accuracy.parts`` makes it less).
+    Neglected: creep of the strain during a stroke, above all under fluid pressure. ``ngwear verify stroke_memory``
+    measures it, ``ngwear.loop.time_step_error`` estimates it in a run, and ``Accuracy.parts`` reduces it.
 
     Parameters
     ----------
     background : Background
     series : PronySeries
     durations : sequence of float
-        Of each kind of stroke [s].
+        Duration of each stroke of the cycle [s].
     mounted : array, shape (elements, 12, 4)
-        S_iso of the mounted part at the background's points [MPa].
+        S_iso of the mounted part at the points of the background mesh [MPa].
     rest : float
-        How long it has sat mounted [s].
+        Time from mounting to the first stroke [s].
     """
 
     def __init__(
@@ -57,26 +57,26 @@ class CycleMemory:
         self.stresses = (mounted,) * len(self.durations)  # S_k, likewise
 
     def to_data(self) -> dict[str, Any]:
-        """What ``from_data`` makes the same memory of, to the last bit."""
+        """The memory as plain data, from which ``from_data`` restores it exactly."""
         return {name: getattr(self, name) for name in STORED}
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> CycleMemory:
-        """The memory again."""
+        """Restore the memory from plain data."""
         memory = cls.__new__(cls)
         for name in STORED:
             setattr(memory, name, data[name])
         return memory
 
     def in_halves(self) -> CycleMemory:
-        """The same for a cycle whose strokes are divided once more, each into two."""
+        """The same memory for a cycle in which each stroke is divided into two halves."""
         halves = copy(self)
         halves.durations = tuple(duration / 2 for duration in self.durations for _ in range(2))
         halves.stresses = tuple(stress for stress in self.stresses for _ in range(2))
         return halves
 
     def enter(self, term: StrokeMemory, plan: Plan, kind: int) -> None:
-        """Prepare the term for the solve of the last stroke of a kind in a plan that starts at what is committed."""
+        """Give the term its history for the solve of the last stroke of a kind; the memory is at the plan's start."""
         before = before_last(plan, kind, self.durations, self.times)
         _, mean = step_factors(self.durations[kind], self.times)
         weight = mean * self.ratios
@@ -87,13 +87,13 @@ class CycleMemory:
         term.hold(float(weight @ (1 - before.feed[kind])), history)
 
     def leave(self, term: StrokeMemory, kind: int) -> None:
-        """Take note of the stress at the equilibrium of a stroke."""
+        """Store the stress at the equilibrium of a stroke."""
         stresses = list(self.stresses)
         stresses[kind] = term.stress()
         self.stresses = tuple(stresses)
 
     def commit(self, plan: Plan) -> None:
-        """Move the memory to the end of a plan whose strokes have all been solved."""
+        """Advance the memory to the end of a plan whose strokes are all solved."""
         done = whole(plan, self.durations, self.times)
         relaxed = done.decay[:, None, None, None] * self.relaxed
         for stress, feed in zip(self.stresses, done.feed, strict=True):

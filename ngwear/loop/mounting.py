@@ -1,4 +1,4 @@
-"""Before the first stroke: the unworn section meshed, and mounted."""
+"""Mesh the unworn section and mount the part, before the first stroke."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Any
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.body import Body
-from ngwear.loop.refinement import mounting_field, unworn_outline
+from ngwear.loop.refinement import mounting_field, unworn_outline, wanted_size
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
+from ngwear.materials import PronySeries
 from ngwear.scene.scene import Scene
 from ngwear.wear.archard import critical_distance
 
@@ -21,16 +22,18 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
+MAY_COME = 5.0  # element edges in the contact: gap within which the outline may come into contact later
+
 
 def warn_if_unstable(scene: Scene) -> None:
-    """Warn, where the caller was called, of explicit steps that grow ripples of the pressure."""
+    """Warn if explicit wear steps are too long: the pressure then oscillates from node to node."""
     wear, cycle = scene.wear, scene.program.cycle
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
     critical = critical_distance(scene.accuracy.lengths.patch, rate, scene.part.material.plane_strain_modulus)
     longest = max(s.travel for s in cycle)
     if wear.scheme == "explicit" and longest > critical:
         warnings.warn(
-            f"explicit wear over {longest:.4g} mm a step is unstable: the pressure will show the mesh beyond "
+            f"explicit wear over {longest:.4g} mm a step is unstable: the pressure oscillates from node to node beyond "
             f"{critical:.4g} mm; use scheme = 'implicit', or shorter strokes",
             RuntimeWarning,
             stacklevel=3,
@@ -38,7 +41,7 @@ def warn_if_unstable(scene: Scene) -> None:
 
 
 def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody:
-    """The unworn section, meshed for mounting; ``across`` as of ``mounting_field``."""
+    """The unworn section, meshed for mounting; ``across`` as in ``mounting_field``."""
     if scene.deactivation is not None:
         from ngwear.loop import lost_elements
 
@@ -47,12 +50,12 @@ def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody
 
 
 def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
-    """Bring the surfaces to their places, without fluid pressure; ``on_mount`` is called with the fraction done.
+    """Move the surfaces to their places, without fluid pressure; ``on_mount`` is called with the completed fraction.
 
     Raises
     ------
     ConvergenceError
-        If no equilibrium carries the load.
+        If no equilibrium is found.
     """
     problem = stage.problem
     loads = stage.mounted_loads()
@@ -63,21 +66,23 @@ def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
     if stage.stretched_guess():
         problem.set_loads(loads)
         try:
-            return relax(problem, StepOptions(first=1 / 64), on_step=report)
+            return relax(problem, StepOptions(first=1 / 64), on_step=report)  # a guess: begin with care
         except ConvergenceError as error:
             log.info("%s: mounting by interference instead", error)
             problem.state.vec[:] = 0.0
     problem.set_loads(stage.first_touch())
     try:
-        return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)
+        return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)  # grows while it is easy
     except ConvergenceError as error:
         found = str(error).removesuffix(f"\n{error.report}")
-        advice = "" if "nothing" in found else "; lower force, interference or friction"  # not where nothing holds
-        raise ConvergenceError(f"no equilibrium found that carries the load{advice}: {found}", error.report) from None
+        advice = (
+            "" if "nothing" in found else "; lower force, interference or friction"
+        )  # not if the part has no support
+        raise ConvergenceError(f"no equilibrium found under the mounting load{advice}: {found}", error.report) from None
 
 
 def refuse_idle_contacts(state: State) -> None:
-    """SceneError for a surface that never touches the part: it would wear nothing, without a word."""
+    """SceneError if a surface that should wear the part touches it in no stroke."""
     problem = state.stage.problem
     for spec in state.stage.scene.contacts:
         contact = state.stage.contacts[spec.name]
@@ -86,5 +91,27 @@ def refuse_idle_contacts(state: State) -> None:
             raise SceneError(
                 f"contact '{spec.name}'.surface",
                 spec.surface,
-                "lifts off: it touches its edges in no stroke and wears nothing; move it closer or give a force",
+                "touches its edges in no stroke, so that nothing wears; move it closer or give a force",
             )
+
+
+def give_memory(state: State, scene: Scene, arms: PronySeries) -> None:
+    """Start the memory of the rubber after refinement, from the mounted part at rest without fluid pressure."""
+    from ngwear.fields.background_mesh import Background
+    from ngwear.loop.memory_over_cycles import CycleMemory
+
+    (first, *_), phase = scene.program.cycle, state.phases[0]
+    body = state.stage.body
+    field = wanted_size(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
+    background = Background(Body(body.contour, field))
+    state.stage = stage = Stage(scene, body, background)
+    stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+    stage.begin(phase.vector)
+    stage.problem.set_loads(stage.stroke_loads(first))
+    for term in stage.problem.terms:
+        term.refresh()
+    state.work.add(advance(stage.problem, stage.mounted_loads()))
+    durations = [stroke.duration for stroke in scene.program.cycle]
+    if stage.memory is not None:
+        mounted = stage.memory.stress()
+        state.memory = CycleMemory(background, arms, durations, mounted=mounted, rest=scene.program.rest)

@@ -1,4 +1,4 @@
-"""Where the mesh shall be fine: in the followed contacts, and where the stresses say that it is too coarse."""
+"""Element sizes: fine in the refined contacts, and where the error indicator of the stresses is too large."""
 
 from __future__ import annotations
 
@@ -18,6 +18,8 @@ from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
+# These were settled on the rod seal, by its depth's error and its elements (adaptive_against_fixed.py), TURN besides on
+# an O-ring that could not be meshed with few elements: see the list in tests/benchmarks/README.md.
 FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
 NARROWEST = 0.5  # of the patch: elements of the narrowest zones
 NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
@@ -36,10 +38,10 @@ def wanted_size(
     sliding: float = 0.0,
     left: float = math.inf,
 ) -> SizeField:
-    """Element sizes for the present states, one for each stroke of the cycle.
+    """Required element sizes for the present states, one state for each stroke of the cycle.
 
-    In the contacts those of ``contact_sizes``; elsewhere what brings the indicator of an element to its share of
-    ``Accuracy.stress_error``.
+    In the contacts those of ``contact_sizes``; elsewhere the size at which the error indicator of an element is its
+    share of ``Accuracy.stress_error``.
     """
     contacts = contact_sizes(stage, phases, across=across, reach=reach, sliding=sliding, left=left)
     places, sizes = _stress_sizes(stage, phases)
@@ -52,13 +54,13 @@ def wanted_size(
 
 
 def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0, left: float = math.inf) -> bool:
-    """Whether a followed contact, or a stress, has reached elements that are much too coarse for it.
+    """Whether a refined contact, or a stress concentration, has reached elements that are much too coarse.
 
-    Gaps count up to half as wide as those that ``contact_sizes`` makes a mesh for, so that no mesh is outgrown as soon
-    as it is made.
+    Gaps count up to half of the width for which ``contact_sizes`` refines, so that a new mesh is not too coarse at
+    once.
     """
     body = stage.body
-    if not isinstance(body, Body):  # one that loses elements is never meshed anew
+    if not isinstance(body, Body):  # a scene that deactivates elements is not remeshed
         return False
     wanted = wanted_size(stage, phases, reach=NEARER, sliding=sliding, left=left)
     slack = np.where(wanted.sizes > stage.scene.accuracy.lengths.patch, STRESS_SLACK, CONTACT_SLACK)
@@ -76,15 +78,14 @@ def contact_sizes(
 ) -> SizeField:
     """Element sizes for the contacts alone.
 
-    The patch's where a followed contact carries load, its gap is below ``reach`` patches, or wear over a distance of
-    ``sliding`` [mm] may close it. Fewer patches, down to half, where all the distance that is ``left`` [mm] wears no
-    ``NEAR`` patches. With ``across``, zones that are narrower than others have smaller ones, so many across each, down
-    to ``NARROWEST`` of the scene's, which is that of the mean zone.
+    The size is ``patch`` where a refined contact carries load, where its gap is below ``reach`` times ``patch``, or
+    where wear over a sliding distance of ``sliding`` [mm] may close the gap. The gap limit is smaller, down to half, if
+    the remaining sliding distance ``left`` [mm] wears less than ``NEAR`` times ``patch``. With ``across``, narrow zones
+    of a contact have smaller elements, this number across each, down to ``NARROWEST`` times ``patch``.
 
-    A contact spreads by wear, so that its pressures fall: the highest one wears no deeper than at its present rate, and
-    what is worn brings the surfaces nearer by no more.
+    Wear spreads a contact and lowers its pressures, so that the present wear rate is an upper bound of later ones.
 
-    Where the leak pressure is asked for, also the patch's where the fluid meets a contact, followed or not.
+    If the leak pressure is computed, the size is ``patch`` also where the fluid meets any contact.
     """
     lengths, contour = stage.scene.accuracy.lengths, stage.body.contour
     size, fronts = np.full(len(contour), np.inf), [np.empty((0, 2))]
@@ -114,15 +115,15 @@ def contact_sizes(
 
 
 def _per_radius(across: float | None) -> float:
-    """Element edges over the outline's radius of curvature, at least: fewer with few elements across.
+    """Least number of element edges per radius of curvature of the outline; smaller for few elements across.
 
-    Two, Netgen's own bound, give the shipped rod seal, on 2.5 across, a fourth more elements where nothing touches.
+    With 2, Netgen's default, the shipped rod seal with 2.5 across has a fourth more elements, all outside contacts.
     """
     return 2.0 if across is None else float(np.clip(across / 2 - 1.0, 1.0, 2.0))
 
 
 def _beside(contour: Outline, t: Array, apart: float) -> Array:
-    """Places of the outline at parameters t, and so far to either side [mm], shape (3 len(t), 2)."""
+    """Places of the outline at parameters t, and at the distance ``apart`` [mm] on both sides, shape (3 len(t), 2)."""
     points = np.arange(len(contour) + 1)
     ways = np.concatenate([[0.0], np.cumsum(contour.lengths)])
     there = np.interp(t, points, ways)[:, None] + apart * np.array([-1, 0, 1])
@@ -130,7 +131,7 @@ def _beside(contour: Outline, t: Array, apart: float) -> Array:
 
 
 def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:
-    """Element edge for each node of a contact by its zone, or the nearest one, shape (k,)."""
+    """Element edge at each node of a contact, by the width of the nearest zone, shape (k,) [mm]."""
     if across is None or not (zones := profile.zones()):
         return np.full(len(profile.t), patch)
     nodes = np.concatenate([np.arange(zone.nodes.start, zone.nodes.stop) for zone in zones])
@@ -140,14 +141,14 @@ def element_edges(profile: ContactProfile, patch: float, across: float | None) -
 
 
 def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
-    """Centres of the elements, shape (m, 2), and the element edge that their stress error asks for, shape (m,).
+    """Centres of the elements, shape (m, 2), and the element edge that their stress error requires, shape (m,) [mm].
 
-    The stress is compared with its continuous recovery at the nodes (Zienkiewicz & Zhu, Int. J. Numer. Methods Eng.
-    24 (1987) 337): eta^2 = int |P - P*|^2 / 2G dV. With N elements of equal error each may have
-    eta = stress_error sqrt(energy / N); the error falls with the element edge to the power of the displacement's order.
-    Order 1 is taken for 2 in this, and arrives in several meshes: where few elements are refined, N stays and theirs
-    falls with the square (the shipped shaft then has 7,000 elements; by the first power it had 8,800). A tolerance of 1
-    asks for nothing.
+    The stress is compared with its continuous recovery at the nodes (Zienkiewicz & Zhu, Int. J. Numer. Methods Eng. 24
+    (1987) 337): eta^2 = int |P - P*|^2 / 2G dV. With N elements of equal error each may have eta = stress_error
+    sqrt(energy / N). The error is proportional to the element edge to the power of the displacement's order. For order
+    1 the power 2 is used, and several meshes are needed: if few elements are refined, N hardly changes and their error
+    falls with the square (7,000 elements on the shipped shaft, 8,800 with the first power). A tolerance of 1 requires
+    nothing.
     """
     accuracy = stage.scene.accuracy
     tolerance = accuracy.tolerances.stress_error
@@ -168,7 +169,7 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
 
 
 def _spanned(contour: Outline, profile: ContactProfile, near: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Outline points at marked nodes, and between them where a mesh edge joins two."""
+    """Mask of outline points at marked nodes, and between two of them that a mesh edge joins."""
     n = len(contour)
     ask = np.zeros(n, dtype=bool)
     ask[np.rint(profile.t[near]).astype(int) % n] = True
@@ -180,14 +181,14 @@ def _spanned(contour: Outline, profile: ContactProfile, near: NDArray[np.bool_])
 
 
 def unworn_outline(scene: Scene) -> Outline:
-    """The scene's outline with points as near to each other as elements of its patch ask for."""
+    """The scene's outline, resampled for elements of edge ``patch`` on the edges that wear."""
     return smoothed(scene.part.outline, scene.worn_edges, 1.3 * scene.accuracy.lengths.patch)
 
 
 def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
-    """Element sizes while the part is mounted: the followed edges fine enough for their shape.
+    """Element sizes for mounting: fine at curved edges of refined contacts.
 
-    ``across`` is that of a scene whose lengths come from it.
+    ``across`` is ``Accuracy.across`` of a scene whose lengths come from it, else None.
     """
     lengths, contour = scene.accuracy.lengths, scene.part.outline
     curved = np.abs(contour.turning) > 1e-3
@@ -204,7 +205,7 @@ def mounting_field(scene: Scene, across: float | None = None) -> SizeField:
 
 
 def _nearest_place(scene: Scene, spec: Contact) -> Array:
-    """Where the surface comes nearest to its edges, shape (1, 2)."""
+    """Place on the edges that is nearest to the surface, shape (1, 2) [mm]."""
     contour = scene.part.outline
     t = np.concatenate([i + np.linspace(0, 1, 201)[:-1] for i in np.flatnonzero(contour.on(spec.edges))])
     places = contour.at(t)

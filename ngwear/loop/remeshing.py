@@ -1,4 +1,4 @@
-"""A new mesh for the present outline, fine where the contact is, with all states carried over."""
+"""Remeshing of the worn section, fine in the contacts, with transfer of all states."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ from ngwear.loop.state import State
 
 Array = NDArray[np.float64]
 
+# Settled on the rod seal; a mesh beyond them is no wrong one, only a worse one (``Body.move_to`` refuses those).
 SHORTEST = 0.4  # of its length when meshed: how short a segment may become before the outline is tidied
-LARGEST_JUMP = 1e-6  # of the section's area
+LARGEST_JUMP = 1e-6  # of the section's area, in a new mesh: rounding leaves 1e-15, a lost point far more
 FARTHEST = 1.0  # of the patch's edge: how far the outline may move on one mesh
 
 
 def is_due(state: State) -> bool:
-    """Whether the contact has outgrown the patch, or the outline has moved or shrunk too far for its mesh.
+    """Whether the mesh is too coarse for the contact, or the outline has moved or shrunk too far on this mesh.
 
-    Never so if the scene lets the nodes move as far as they can.
+    False if ``wear.remesh`` is not ``"due"``.
     """
     body, scene = state.stage.body, state.stage.scene
     if scene.wear.remesh != "due":
@@ -40,10 +41,10 @@ def is_due(state: State) -> bool:
 
 
 def still_ahead(state: State) -> dict[str, float]:
-    """How far the surfaces still slide [mm], for ``refinement.contact_sizes``.
+    """Remaining sliding distance [mm], as keyword argument of ``refinement.contact_sizes``.
 
-    With elements across, and new meshes when due, that tells which gaps may close before the next one; lengths that the
-    scene gives stand, however little is left. Where no other mesh comes, this one shall do for all of it.
+    ``left`` with elements across and remeshing when due: it limits the gaps that may close. ``sliding`` if no other
+    mesh is planned: this mesh must suffice to the end. Nothing if the scene gives lengths.
     """
     scene, program = state.stage.scene, state.stage.scene.program
     left = program.slid(program.strokes) - program.slid(state.strokes)
@@ -53,10 +54,14 @@ def still_ahead(state: State) -> dict[str, float]:
 
 
 def remesh(state: State, contour: Outline | None = None) -> None:
-    """Mesh the present (or the given) outline anew and carry the state over, in place.
+    """Remesh the present (or the given) outline and transfer the state to the new mesh, in place.
 
-    The carried vectors are first guesses, not equilibria. Raises MeshError if the mesh fails its gates; the
-    state is then as it was.
+    The transferred vectors are first guesses, not equilibria.
+
+    Raises
+    ------
+    MeshError
+        If the mesh fails a check; the state is then unchanged.
     """
     old, phases = state.stage, [p.vector for p in state.phases]
     contour = old.body.contour if contour is None else contour
@@ -77,7 +82,7 @@ def remesh(state: State, contour: Outline | None = None) -> None:
 
 
 def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
-    """Go on with another stage: the phases' vectors on it are given, what stands on the outline is carried over."""
+    """Replace the stage: ``vectors`` are the states of the strokes on it; values on the outline are interpolated."""
     values = _Moved(state.contour, stage.body.contour)
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
@@ -89,14 +94,14 @@ def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
 
 
 class _Moved:
-    """Values at the points of one outline, their last axis, at those of another with almost the same shape."""
+    """Interpolates values at the points of one outline (last axis) to those of another of almost the same shape."""
 
     def __init__(self, before: Outline, after: Outline) -> None:
         self._before, self._after = before, after
 
     @cached_property
     def _places(self) -> tuple[Array, Array]:
-        """Ways along the outline before: of its points, and of those after."""
+        """Arc length along the old outline: of its own points, and of the new points."""
         from shapely import LinearRing, line_locate_point, points
 
         ways = np.concatenate([[0.0], np.cumsum(self._before.lengths)])

@@ -1,4 +1,4 @@
-"""What a run hands back: numbers with their errors, outlines, pressures, pictures, and NGSolve's own objects."""
+"""The result of a run: quantities with their errors, outlines, pressures, figures, and NGSolve objects."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ContactPressure:
-    """Pressure along one contact in one stroke; each array has one value a node, along the outline.
+    """Pressure along one contact in one stroke; the arrays have one value for each node, along the outline.
 
     Attributes
     ----------
@@ -38,9 +38,9 @@ class ContactPressure:
     stroke : float
         Number of the stroke.
     along : array, shape (n,)
-        Way along the deformed outline from the first node [mm].
+        Arc length along the deformed outline from the first node [mm].
     place : array, shape (n, 2)
-        Deformed nodes [mm].
+        Deformed position of the nodes [mm].
     pressure : array, shape (n,)
         Cauchy pressure [MPa].
     gap : array, shape (n,)
@@ -69,24 +69,24 @@ class ContactPressure:
 
 @dataclass(frozen=True)
 class Result:
-    """How a run ended, and what it found; printed, a table with the stated errors.
+    """Result of a run; ``print(result)`` shows a table of the quantities with their estimated errors.
 
     Attributes
     ----------
     status : str
         ``"completed"`` or ``"gave up"``.
     message : str
-        Why it stopped.
+        Why the run stopped.
     summary : dict
-        As in ``summary.json``.
+        Contents of ``summary.json``.
     recorder : Recorder or None
         Rows (as in ``series.csv``) and snapshots; None if the result is read from a folder.
     state : State or None
         The last accepted state; None if the part could not be mounted, or the result is read from a folder.
     error : Exception or None
-        What made it give up.
+        The error at which the run gave up.
     folder : Path or None
-        Where its files are.
+        Folder of its files.
     """
 
     status: str
@@ -99,19 +99,19 @@ class Result:
 
     @classmethod
     def read(cls, folder: Path | str) -> Result:
-        """Read what a run has left in its folder.
+        """Read the result of a run from its folder.
 
         Raises
         ------
         ResultError
-            If there is no summary, or it is damaged.
+            If there is no ``summary.json``, or it is damaged.
         """
         file = Path(folder) / SUMMARY
         try:
             summary = json.loads(file.read_text(encoding="utf-8"))
             return cls(summary["status"], summary["message"], summary, None, None, folder=Path(folder))
         except OSError:
-            raise ResultError(f"{file} does not exist: give the folder of a run that has ended") from None
+            raise ResultError(f"{file} does not exist: give the folder of a finished run") from None
         except (ValueError, KeyError, TypeError) as error:
             raise ResultError(f"{file} cannot be read as a summary of ngwear: {error!r}") from error
 
@@ -120,7 +120,7 @@ class Result:
 
     @cached_property
     def series(self) -> dict[str, NDArray[Any]]:
-        """Columns as in ``series.csv``, one value a solved stroke; ``pandas.DataFrame`` takes them."""
+        """Columns of ``series.csv``, one value for each solved stroke; input for ``pandas.DataFrame``."""
         if self.recorder is None:
             return dict(read_result(self._folder).series)
         rows = self.recorder.rows
@@ -128,21 +128,21 @@ class Result:
 
     @cached_property
     def snapshots(self) -> Sequence[Snapshot]:
-        """Outline and pressures of each solved stroke."""
+        """Outline and contact pressures of each solved stroke."""
         return read_result(self._folder).snapshots if self.recorder is None else self.recorder.snapshots
 
     @property
     def worn_profile(self) -> Array:
-        """Outline at the end, shape (n, 2) [mm]; closed, its first point is not repeated."""
+        """Outline at the end of the run, shape (n, 2) [mm]; closed, the first point is not repeated."""
         return self.outline()
 
     def outline(self, stroke: float | None = None) -> Array:
-        """Outline after a solved stroke, or at the end, shape (n, 2) [mm]; stroke 0 is the unworn one.
+        """Outline after a solved stroke, default the last, shape (n, 2) [mm]; stroke 0 is the unworn outline.
 
         Raises
         ------
         ResultError
-            If the stroke was not kept.
+            If the stroke was not saved.
         """
         return self._at(stroke, None).outline
 
@@ -154,22 +154,26 @@ class Result:
         Parameters
         ----------
         contact : str or None
-            Its name; the first contact unless given.
+            Name of the contact; default the first one.
         stroke : float or None
-            Number of the stroke; the last one unless given.
+            Number of the stroke; default the last one.
         kind : str or None
-            Name of the stroke in the cycle, where several of them were solved at this number, as at the end.
+            Name of the stroke in the cycle, if several were solved at this number, as at the end.
+
+        Returns
+        -------
+        ContactPressure
 
         Raises
         ------
         ResultError
-            If the stroke or the contact was not kept.
+            If the stroke or the contact was not saved.
         """
         found = self._at(stroke, kind)
         names = list(found.profiles)
         name = names[0] if contact is None and names else contact
         if name is None or name not in found.profiles:
-            raise ResultError(f"the pressure of contact {name!r} was not kept; kept: {names} (see 'refine')")
+            raise ResultError(f"the pressure of contact {name!r} was not saved; saved: {names} (see 'refine')")
         profile = found.profiles[name]
         place = profile["place [mm]"]
         steps = np.linalg.norm(np.diff(place, axis=0), axis=1)
@@ -179,21 +183,21 @@ class Result:
         )
 
     def plot(self, field: str = "von Mises stress", *, stroke: float | None = None, kind: str | None = None) -> Figure:
-        """Figure of the loaded section, filled by a field, between its surfaces, with the pressures along the contacts.
+        """Figure of the loaded section coloured by a field, with the surfaces and the contact pressures.
 
         Parameters
         ----------
         field : str
-            One of ``ngwear.results.section.FIELDS``; the unit may be left out.
+            A name in ``ngwear.results.section.FIELDS``, with or without its unit.
         stroke : float or None
-            A kept one; the last unless given.
+            A stroke whose section was saved; default the last one.
         kind : str or None
-            Name of the stroke in the cycle; the one with the highest fluid pressure unless given.
+            Name of the stroke in the cycle; default the one with the highest fluid pressure.
 
         Raises
         ------
         ResultError
-            If there is no such field, or the stroke's section was not kept.
+            If there is no such field, or the section of the stroke was not saved.
         """
         from ngwear.plots.loaded_section import draw_section
 
@@ -202,7 +206,7 @@ class Result:
 
     @property
     def mesh(self) -> ng.Mesh:
-        """NGSolve's mesh of the worn section, undeformed.
+        """NGSolve mesh of the worn section, undeformed.
 
         Raises
         ------
@@ -213,16 +217,16 @@ class Result:
 
     @property
     def displacement(self) -> ng.GridFunction:
-        """NGSolve's displacement on that mesh at the end of the last stroke [mm]; errors as ``mesh``."""
+        """NGSolve displacement on ``mesh`` at the end of the last stroke [mm]; raises errors as ``mesh``."""
         from ngwear.effects.base import DISPLACEMENT
 
         return self._standing.stage.problem.fields[DISPLACEMENT]
 
     @cached_property
     def stress(self) -> ng.CoefficientFunction:
-        """NGSolve's Cauchy stress there, 3 x 3, its last row and column out of the section [MPa]; errors as ``mesh``.
+        """NGSolve Cauchy stress on ``mesh``, 3 x 3, third row and column out of plane [MPa]; raises errors as ``mesh``.
 
-        Of rubber with memory it is the long-term part alone.
+        For rubber with memory it is the long-term part only.
         """
         from ngwear.loop.stress import cauchy_stress
 
@@ -232,19 +236,19 @@ class Result:
     def records(self) -> Recorder:
         """``recorder``; ResultError if the result is read from a folder."""
         if self.recorder is None:
-            raise ResultError("rows are kept only by the run itself: 'series' reads them from the folder")
+            raise ResultError("a result read from a folder has no records: use 'series'")
         return self.recorder
 
     @property
     def end(self) -> State:
         """``state``; ResultError if there is none."""
         if self.state is None:
-            raise ResultError("mesh and fields are kept only by the run itself: run the scene in this process")
+            raise ResultError("a result read from a folder has no mesh and no fields: run the scene in this process")
         return self.state
 
     @property
     def _standing(self) -> State:
-        """The state, with the part as it stands at the end of the last stroke."""
+        """The state, with the displacement at the end of the last stroke set in the problem."""
         state = self.end
         if state.phases:
             latest = state.reports[-1].phase if state.reports else -1
@@ -254,22 +258,22 @@ class Result:
     @property
     def _folder(self) -> Path:
         if self.folder is None:
-            raise ResultError("the run kept nothing: give it a folder by out=...")
+            raise ResultError("the run has no folder: give it one by out=...")
         return self.folder
 
     def _at(self, stroke: float | None, kind: str | None) -> Snapshot:
         kept = [s for s in self.snapshots if kind is None or s.kind == kind]
         if not kept:
             kinds = list(dict.fromkeys(s.kind for s in self.snapshots))
-            raise ResultError(f"no stroke {kind!r} was kept; kept are those named {kinds}")
+            raise ResultError(f"no stroke is called {kind!r}; the cycle has {kinds}")
         if stroke is None:
             return kept[-1]
         found = [s for s in kept if s.stroke == stroke]
         if not found:
             near = sorted(dict.fromkeys(s.stroke for s in kept), key=lambda number: abs(number - stroke))[:4]
-            told = ", ".join(f"{number:g}" for number in sorted(near))
+            nearest = ", ".join(f"{number:g}" for number in sorted(near))
             raise ResultError(
-                f"stroke {stroke:g} was not kept: a jump passed over it; the nearest kept are {told}. "
-                "save.strokes names strokes that no jump passes over"
+                f"stroke {stroke:g} was not saved: a jump passed over it; the nearest saved strokes are {nearest}; "
+                "give save.strokes in the scene to save others"
             )
         return found[-1]

@@ -1,4 +1,4 @@
-"""One verb: run a scene to its end, with files, pictures, progress and resumption."""
+"""Run a scene to its last stroke, with files, figures, progress bar and resumption."""
 
 from __future__ import annotations
 
@@ -23,17 +23,17 @@ log = logging.getLogger(__name__)
 
 
 class Drawing(Protocol):
-    """What draws the figures of a run."""
+    """Interface of an object that draws the figures of a run."""
 
     def first(self, folder: Path, kept: KeptSections) -> None:
-        """Draw the loaded section of the part before it wears, or have it drawn meanwhile."""
+        """Draw the loaded section of the unworn part, here or in another process."""
 
     def rest(self, folder: Path) -> None:
-        """Draw all figures; they are there when this returns."""
+        """Draw all figures; the files exist when this returns."""
 
 
 class DrawnHere:
-    """What draws the figures of a run in this process."""
+    """Draws the figures of a run in this process."""
 
     def first(self, folder: Path, kept: KeptSections) -> None:
         """Draw the loaded section."""
@@ -42,7 +42,7 @@ class DrawnHere:
         plot_section(folder, kept)
 
     def rest(self, folder: Path, share: tuple[int, int] = (0, 1)) -> None:
-        """Draw all, or this process's share of it (``ngwear.plots.wear.plot``)."""
+        """Draw all figures, or a share of them (``ngwear.plots.wear.plot``)."""
         from ngwear.plots.wear import plot
 
         plot(folder, share=share)
@@ -60,7 +60,7 @@ def run(
     errors: Callable[[Recorder, dict[str, Any]], None] | None = None,
     draw: Drawing | None = None,
 ) -> Result:
-    """Run a scene to its end.
+    """Run a scene to its last stroke, without coarser runs: the error of the mesh is not estimated.
 
     Parameters
     ----------
@@ -68,20 +68,21 @@ def run(
     out : path or None
         Folder for ``series.csv``, ``result.h5``, ``summary.json``, the checkpoint and the figures.
     resume : bool
-        Go on from the folder's checkpoint.
+        Continue from the checkpoint in the folder.
     progress : bool
-        Show a progress bar with depth, jump and the time left.
+        Show a progress bar with depth, cycles in a solve and remaining time.
     throw : bool
-        Raise when the run gives up; else return a result that says why. What it had is saved either way.
+        Raise an error when the run gives up; else return a result with the reason. Results so far are saved in both
+        cases.
     figures : bool
-        Draw into the folder: the loaded section once the part is mounted, all figures at the end.
+        Draw figures into the folder: the loaded section after mounting, all figures at the end.
     on_step : callable or None
         Called with the state after mounting and after each accepted step.
     errors : callable or None
-        Called with records and summary of a run that reached its end, once all data are written: it may state more
-        errors there.
+        Called with records and summary of a completed run after all data are written; it may add errors to the
+        summary.
     draw : Drawing or None
-        Draws instead of this process.
+        Draws the figures; default: this process.
 
     Raises
     ------
@@ -139,7 +140,7 @@ def run(
             summary["wall time [s]"] = round(time.perf_counter() - wall, 3)
             if folder is not None:
                 folder.finish(recorder, summary)
-    finally:  # who stops waiting for companions loses nothing
+    finally:  # an interruption while waiting for the coarser runs loses no figure
         if folder is not None and figures and recorder.rows:
             draw.rest(folder.path)
     if error is not None and throw:
@@ -155,20 +156,20 @@ def _keep(folder: Folder | None, state: State, recorder: Recorder, wall: float, 
 
 
 def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
-    """Keep the loaded section as it was when a run gave up: what there is to see tells why."""
+    """Save the loaded section at which a run gave up: it often shows the reason."""
     phases, memory = state.phases, state.memory
     state.phases, state.memory = list(phases), copy(memory)
     try:
         recorder.add_sections(stepper.look_ahead(state))
     except (ConvergenceError, GeometryError, MeshError) as error:
-        log.info("the last section is not kept: %s", error)
+        log.info("the last section is not saved: %s", error)
     finally:
         state.phases, state.memory = phases, memory
         stepper.stand(state)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
-    """Errors by the time step of rubber with memory, and a warning if they are not known."""
+    """Errors by the time step of rubber with memory; a warning if the estimate fails."""
     if state.memory is None:
         return {}, []
     from ngwear.loop.time_step_error import time_step_errors
@@ -176,11 +177,11 @@ def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
     try:
         return time_step_errors(state), []
     except ConvergenceError as error:
-        return {}, [f"strokes in two parts gave up ({error}); the error of the time step is not known"]
+        return {}, [f"the error of the time step is not known: a cycle with half the time step gave up ({error})"]
 
 
 def _write_vtk(path: Path, state: State) -> None:
-    """Write the last state of each stroke of the cycle for ParaView."""
+    """Write the last state of each stroke of the cycle as VTK files for ParaView."""
     import ngsolve as ng
 
     from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
@@ -203,7 +204,7 @@ def _write_vtk(path: Path, state: State) -> None:
 
 
 class _Bar:
-    """Progress on the terminal: mounting in per cent, then strokes with depth and jump."""
+    """Progress bar: mounting in per cent, then strokes with depth and cycles in a solve."""
 
     def __init__(self, scene: Scene, *, shown: bool) -> None:
         from tqdm import tqdm

@@ -1,4 +1,4 @@
-"""What pictures of a loaded section need: deformed elements, stress in them, surfaces and pressures along contacts."""
+"""Data of a loaded section for figures: deformed elements, stresses, surfaces and contact pressures."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ Arrays = dict[str, NDArray[np.generic]]
 
 
 def section_snapshot(stage: Stage) -> Arrays:
-    """The section as it stands in the present state; see ``ngwear.results.section.Section`` for names and shapes.
+    """The section in the present state; names and shapes as in ``ngwear.results.section.Section``.
 
-    In single precision, stresses at the vertices only: about 75 bytes an element, 45 in the file.
+    Single precision, stresses at vertices only: about 75 bytes for each element, 45 in the compressed file.
     """
     problem, body = stage.problem, stage.body
     u, nodes = problem.fields[DISPLACEMENT], ElementNodes(body.mesh)
@@ -49,7 +49,7 @@ def section_snapshot(stage: Stage) -> Arrays:
 
 
 def _contact(contact: OutlineContact) -> Arrays:
-    """Where a surface stands, and the pressure along the edges that may touch it."""
+    """Position of a surface, and the pressure along the edges that may touch it."""
     profile = contact.profile()
     return {
         "place [mm]": profile.place,

@@ -1,4 +1,4 @@
-"""What of a stroke's slip goes on in every cycle that a solve stands for."""
+"""Slip of a stroke in each of the cycles that one solve stands for."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ Array = NDArray[np.float64]
 
 
 def lasting(cycle: Sequence[Stroke], phases: Sequence[Phase], index: int, repeats: int) -> dict[str, Array] | None:
-    """Slip over travel of a stroke, mean over its ``repeats``, by contact: what the wear follows.
+    """Slip over travel of a stroke, mean over its ``repeats`` [-], by contact; wear is proportional to it.
 
-    Where wear unloads a place, its neighbours take over its friction and slip a little, once; solved for many cycles at
-    once, that slip must not count as often. A surface that goes to and fro leaves each point where it was after a cycle
-    that repeats itself, so that both strokes slip alike: what one slips more than the other happens once. Cycles of
-    other strokes are taken as they are.
+    Where wear unloads a place, its neighbours take over the friction and slip a little, once. In a solve for many
+    cycles this slip must count once, not in each cycle. In a periodic cycle of two opposite strokes each point returns
+    to its place, so that both strokes have equal slip: the excess of one over the other happens once. For other cycles
+    the slip is not corrected.
     """
     own = phases[index].shares
     if own is None or repeats < 2 or len(cycle) != 2:

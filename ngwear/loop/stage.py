@@ -1,4 +1,4 @@
-"""A scene set up on a meshed body: its terms, their loads and its problem."""
+"""A scene on a meshed section: its terms, their loads and the equilibrium problem."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 
-if TYPE_CHECKING:  # an effect that the scene does not list is not even imported
+if TYPE_CHECKING:  # modules of effects that the scene does not have are not imported
     from ngwear.effects.fluid_pressure import FluidPressure
     from ngwear.effects.friction import Friction, FullSliding
     from ngwear.effects.stick_slip import StickSlip
@@ -32,18 +32,18 @@ Array = NDArray[np.float64]
 
 
 class Stage:
-    """The effects of a scene on one mesh; only what the scene lists is built.
+    """The effects of a scene on one mesh; only effects that the scene has are built.
 
     Attributes
     ----------
     contacts : dict of str to OutlineContact
     frictions : dict of str to Friction
-        All of these: those that may stick, ``sticking``, and those in full sliding, ``sliding``.
+        All contacts with friction; ``sticking`` are those with stick and slip, ``sliding`` those in full sliding.
     fluid : FluidPressure or None
     memory : StrokeMemory or None
     problem : Problem
 
-    ``background`` is where the scene's memory lives; without one, as while the part is mounted, there is none.
+    ``background`` is the mesh on which the viscoelastic memory is stored; None, as during mounting: no memory.
     """
 
     def __init__(self, scene: Scene, body: MeshedSection, background: Background | None = None) -> None:
@@ -102,7 +102,7 @@ class Stage:
         )
 
     def _friction(self, spec: Contact, law: FrictionLaw) -> Friction:
-        """The friction of a contact that has this law of it."""
+        """Build the friction term of a contact."""
         scene, contact = self.scene, self.contacts[spec.name]
         speed = scene.program.cycle[0].speed
         if scene.may_stick(spec):
@@ -116,7 +116,7 @@ class Stage:
         return self.sliding[spec.name]
 
     def stroke_loads(self, stroke: Stroke) -> dict[str, float]:
-        """Loads of a stroke: every surface in its place, sliding in the stroke's direction, under its pressure."""
+        """Loads of a stroke: position or force of each surface, direction of sliding, fluid pressure."""
         loads: dict[str, float] = {}
         for spec in self.scene.contacts:
             contact = self.contacts[spec.name]
@@ -131,17 +131,17 @@ class Stage:
 
     @property
     def leaking(self) -> FluidPressure | None:
-        """The fluid, where the scene asks what pressure of it the contacts hold."""
+        """The fluid pressure term if the scene asks for the leak pressure, else None."""
         spec = self.scene.fluid
         return self.fluid if spec is not None and spec.leak_pressure else None
 
     @property
     def remembers(self) -> bool:
-        """Whether friction sticks, so that a stroke depends on where the one before it ended."""
+        """Whether a contact has stick and slip: then a stroke depends on the end of the previous one."""
         return bool(self.sticking)
 
     def begin(self, vector: Array) -> None:
-        """Let a stroke begin where another has ended: slip is counted from that state."""
+        """Start a stroke from the state in which another ended: slip is measured from there."""
         state = self.problem.state.vec.FV().NumPy()
         keep = state.copy()
         state[:] = vector
@@ -150,22 +150,22 @@ class Stage:
         state[:] = keep
 
     def shares(self, stroke: Stroke) -> dict[str, Array]:
-        """What the contact's nodes slip in the stroke just solved over its travel [-], of each friction that sticks."""
+        """Slip over travel of the nodes in the stroke just solved [-], for each contact with stick and slip."""
         ways = {name: friction.slid() for name, friction in self.sticking.items()}
         return {name: self.contacts[name].edges_to_nodes(way) / stroke.travel for name, way in ways.items()}
 
     def set_shares(self, shares: dict[str, Array] | None) -> None:
-        """Let wear in the next solve follow these shares; everything slips where none are known."""
+        """Set slip over travel for the wear of the next solve; 1 if it is not known."""
         for name, contact in self.contacts.items():
             if contact.share is not None:
                 contact.set_share(1.0 if shares is None else shares[name])
 
     def stretched_guess(self) -> bool:
-        """Stretch an axisymmetric part, at constant volume, until it clears its shafts; False if none overlaps it.
+        """Stretch an axisymmetric part at constant volume until it clears its shafts; False if no shaft overlaps it.
 
         ``r' = sqrt(r^2 + (a + d)^2 - a^2)`` for an overlap d at the radius a: the exact displacement of an
-        incompressible ring, so that the guess is free of volumetric strain. Letting the part settle from
-        there takes a fifth of the iterations of pushing a shaft in from first touch.
+        incompressible ring, so that this guess has no volumetric strain. The equilibrium from there takes a fifth of
+        the iterations of mounting by interference from first touch.
         """
         if not self.scene.axisymmetric:
             return False
@@ -181,7 +181,7 @@ class Stage:
         return True
 
     def first_touch(self) -> dict[str, float]:
-        """Loads before mounting: surfaces that would overlap the part drawn back until they just touch it."""
+        """Loads before mounting: surfaces that overlap the part are moved back until they just touch it."""
         loads: dict[str, float] = {}
         for spec in self.scene.contacts:
             contact = self.contacts[spec.name]
@@ -194,9 +194,9 @@ class Stage:
         return self.mounted_loads() | loads
 
     def mounted_loads(self) -> dict[str, float]:
-        """Loads of the mounted part before the first stroke: no fluid pressure, and nothing has slid yet.
+        """Loads of the mounted part before the first stroke: no fluid pressure, no sliding.
 
-        Full sliding has no such state; a surface in it is mounted sliding, but for rubber that may tear.
+        Full sliding has no state at rest: such a surface is mounted sliding, except if the rubber may tear.
         """
         loads = self.stroke_loads(self.scene.program.cycle[0])
         for friction in self.frictions.values():
@@ -207,7 +207,7 @@ class Stage:
         return loads
 
     def _clearance(self, spec: Contact) -> tuple[float, int]:
-        """Smallest gap over the contact's edges [mm] and the contour point where it is."""
+        """Smallest gap over the contact's edges [mm], and the number of the outline point with it."""
         contour = self.body.contour
         mine = contour.on(spec.edges)
         touching = mine | np.roll(mine, 1)
@@ -216,7 +216,7 @@ class Stage:
         return float(gap[worst]), int(np.flatnonzero(touching)[worst])
 
     def _travel_to_touch(self, spec: Contact) -> float:
-        """Travel along the approach at which a surface under force bites a little and so meets a stiffness [mm]."""
+        """Travel along the approach at which a surface under force overlaps the part slightly [mm]."""
         ax, ay = spec.surface.approach
         contour = self.body.contour
         mine = contour.on(spec.edges)
@@ -225,24 +225,26 @@ class Stage:
         def smallest(travel: float) -> float:
             return float(spec.surface.gap(x - travel * ax, y - travel * ay).min())
 
-        # Enough to press on the mesh edges beside the nearest point; another ridge may be as high.
+        # Enough overlap to press on the mesh edges beside the nearest point.
         here = spec.surface.gap(x, y)
         first = int(here.argmin())
         beside = here[max(first - 1, 0) : first + 2]
-        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.lengths.mounting)
+        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.lengths.mounting)  # crushes none
         bite += 1e-6 * float(contour.lengths.min())
         travel, reach = 0.0, 10.0 * float(np.ptp(contour.points, axis=0).max())
-        for _ in range(500):  # the gap is a distance: so far the surface can go without passing the place
+        for _ in range(500):  # the gap is a distance: a step of this length does not pass the place
             off = smallest(travel) + bite
             travel += off
             if abs(off) < 1e-3 * bite:
                 return travel
             if abs(travel) > reach:
                 break
-        raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "does not meet its edges along its approach")
+        raise SceneError(
+            f"contact '{spec.name}'.surface", spec.surface, "does not meet its edges along its direction of approach"
+        )
 
     def _overlap(self, spec: Contact) -> float:
-        """How far the surface has to be drawn back along its approach to free the part [mm]."""
+        """Distance by which the surface must move back along its approach to clear the part [mm]."""
         gap, _ = self._clearance(spec)
         if gap >= 0:
             return 0.0
@@ -256,21 +258,25 @@ class Stage:
             return float(spec.surface.gap(x + retreat * ax, y + retreat * ay).min())
 
         if smallest(high) < 0:
-            raise SceneError(f"contact '{spec.name}'.surface", spec.surface, "cannot be drawn back from the part")
+            raise SceneError(
+                f"contact '{spec.name}'.surface",
+                spec.surface,
+                "cannot be moved back along its approach until it clears the part",
+            )
         for _ in range(60):
             middle = 0.5 * (low + high)
             low, high = (low, middle) if smallest(middle) >= 0 else (middle, high)
         return high
 
     def margins(self) -> dict[str, float]:
-        """How far each contact that slides in full is from waves that grow along it [-], see ``Ripples.margin``."""
+        """Stability margin of each contact in full sliding [-] (``Ripples.margin``); below 0, waves grow along it."""
         return {name: friction.margin() for name, friction in self.sliding.items()}
 
     def forces(self) -> dict[str, Array]:
         """Resultants on the part in the present state, (x, y) [N, or N/mm in plane strain].
 
-        Contact pressure and friction by contact, the fluid, and in axisymmetry the hoop tension's radial
-        resultant; at equilibrium they add up to zero, but for what supports carry.
+        Contact pressure and friction of each contact, fluid pressure, and in axisymmetry the radial resultant of the
+        hoop tension. At equilibrium their sum is the force on the supports, with opposite sign.
         """
         found = {}
         for name, contact in self.contacts.items():

@@ -1,4 +1,4 @@
-"""The accepted state of a run: one equilibrium for each stroke of the cycle, and the book of worn material."""
+"""The accepted state of a run: one equilibrium for each stroke of the cycle, and the ledger of worn material."""
 
 from __future__ import annotations
 
@@ -19,30 +19,32 @@ from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 from ngwear.wear.jump_control import JumpControl
 
-if TYPE_CHECKING:  # no memory, no import of it
+if TYPE_CHECKING:  # modules of the memory are not imported without it
     from ngwear.fields.background_mesh import Background
     from ngwear.loop.memory_over_cycles import CycleMemory
 
 Array = NDArray[np.float64]
 
+# Settled on the rod seal with 2.5, 4, 8 and 12 elements across: 48 to 81 solves, 0.94 to 0.10 % along the run
+# (``python tests/benchmarks/adaptive_against_fixed.py``).
 FALLS = 1.7  # change of the rate of depth over a step, whose square counts as an error: see depth_ratio
 
 
 @dataclass(frozen=True)
 class LastWear:
-    """What a stroke of the cycle wore the last time; arrays of shape (contacts, n) are of the outline's points.
+    """Wear of a stroke of the cycle in its last step; arrays of shape (contacts, n) belong to the outline points.
 
     Attributes
     ----------
     pressure : array, shape (contacts, n)
-        Depth over way that each contact would wear with its pressure at the end of the last time and the highest wear
-        rate, ``k P / J`` [-]. Depths, not areas: a sharp lip's points come closer as it wears.
+        Worn depth over sliding distance at the pressure of the end of the step and the largest wear rate, ``k P / J``
+        [-]. Depths, not areas, because the points of a sharp lip come closer as it wears.
     mean : array, shape (contacts, n)
-        The same of what the last time wore over its way, ``ways`` [-].
+        Mean of the same over the step: worn depth over ``ways`` [-].
     area : array, shape (contacts,)
-        Area over way that the last time wore [mm].
+        Worn area over ``ways`` [mm].
     ways : array, shape (contacts,)
-        [mm].
+        Equivalent sliding distance of the step, ``int k ds / max k`` [mm].
     """
 
     pressure: Array
@@ -53,19 +55,20 @@ class LastWear:
 
 @dataclass
 class Phase:
-    """What is kept of one stroke of the cycle, for the same stroke of the next one.
+    """Data of one stroke of the cycle, for the solve of the same stroke in the next step.
 
     Attributes
     ----------
     vector : array
-        Equilibrium of the last time.
+        Last equilibrium.
     rate : array or None
         Its change per cycle, on the same mesh.
     worn : LastWear or None
+        Wear of the last step.
     error : float
-        Of what the last time wore, relative [-]; infinite if it is not known.
+        Relative error of the last worn area [-]; infinite if it is not known.
     shares : dict of str to array, or None
-        What each mesh edge has slipped over the travel [-], where friction may stick, of the last time on this mesh.
+        Slip over travel at the nodes [-], of each contact with stick and slip, in the last solve on this mesh.
     """
 
     vector: Array
@@ -77,30 +80,32 @@ class Phase:
 
 @dataclass
 class Ledger:
-    """Book of worn material and of the errors made.
+    """Sums of worn material and of estimated errors.
 
     Attributes
     ----------
     worn : float
-        int W dA by the law, as section area [mm²].
+        Worn section area by the wear law [mm²].
     removed : float
-        Area taken off the outline's polygon [mm²].
+        Area removed from the outline's polygon [mm²].
     moment : float
-        First moment of that area about y = 0 [mm³]: about the axis of a ring, 2 pi times it is the worn volume.
+        First moment of that area about y = 0 [mm³]; 2 pi times it is the worn volume of a ring.
     depth, rate, share : float
-        Greatest depth worn off the outline [mm], what the last step added to it over its share of the program [mm], and
-        that share [-].
+        Maximum worn depth [mm]; its increase in the last step over the step's share of the program [mm]; that share
+        [-].
     area_error : float
-        Sum of the steps' embedded errors of worn area [mm²].
+        Sum of the embedded error estimates of worn area over all steps [mm²].
     depth_error : float
-        What the greatest depth changes by if each point's sum of the steps' errors, with their signs, is taken off it;
-        of jumps only, where the scene lets cycles be jumped; positive if it is less by that [mm].
+        Change of the maximum depth if the sum of the signed error estimates is subtracted at each point [mm]; positive
+        if the depth is overestimated. With ``wear.step = "jump"`` only steps of several cycles count.
     remesh_jump : float
-        Largest relative change of the section's area in a remesh [-].
+        Largest relative change of the section's area by remeshing [-].
+    remeshes : int
+        Number of new meshes.
     lost : dict of Fate to float
         Area of deactivated elements by cause [mm²].
     late : int
-        Cycles by which an element may have been torn too late, at the end of a jump.
+        Largest number of cycles by which an element may be torn too late, at the end of a jump.
     """
 
     worn: float = 0.0
@@ -117,17 +122,17 @@ class Ledger:
     late: int = 0
 
     def copy(self) -> Ledger:
-        """A book of its own with the same entries."""
+        """An independent copy."""
         return replace(self, lost=dict(self.lost))
 
     def depth_ratio(self, before: Ledger, share: float, *, left: float) -> float:
-        """Book a step's rate; return its error of the depth that the program will reach, over its share of that [-].
+        """Store a step's rate of depth; return its error of the final depth over its share of the program [-].
 
-        The rate of the step is taken for what is ``left`` of the program; both shares are fractions of it. What a step
-        tells of itself changes its sign now and then, and the next one would be far too long; and it cannot see a
-        contact's end that runs past whole elements. So the change of the rate over the step, ``FALLS`` times and
-        squared, counts as much, for a step as for the program. What it changes by since the step before, it does from
-        the middle of that to the middle of this one: over its own length in proportion.
+        The final depth is extrapolated with the rate of the step over the part of the program that is ``left``; both
+        shares are fractions of the program. The embedded estimate alone is not enough: it changes sign now and then,
+        and does not see the end of a contact that passes whole elements in one step. So the relative change of the rate
+        in the step, times ``FALLS`` and squared, is a second estimate; the larger one counts. The rates belong to the
+        middle of the two steps, so their change is scaled to the length of this step.
         """
         grown = self.depth - before.depth
         self.rate, self.share = grown / share, share
@@ -143,9 +148,9 @@ class Ledger:
 class State:
     """An accepted state of a run; ``Stepper.advance`` turns one into the next.
 
-    ``depths``, shape (2, n), are the depth worn at the points of the outline and the sum of what its steps err by, with
-    their signs [mm]. ``fatigue`` and ``strained`` are what each element has used up of its life, and what the present
-    cycle uses up so far [-], of a scene whose damage adds up over cycles; else they are empty.
+    ``depths``, shape (2, n), are worn depth and sum of the signed error estimates at the points of the outline [mm].
+    ``fatigue`` is the accumulated damage of each element, and ``strained`` that of the present cycle so far [-]; both
+    are empty unless damage accumulates over cycles.
     """
 
     stage: Stage
@@ -164,24 +169,24 @@ class State:
 
     @property
     def background(self) -> Background | None:
-        """Where the memory lives, if the rubber has one."""
+        """The mesh on which the memory is stored; None without memory."""
         return None if self.memory is None else self.memory.background
 
     def to_data(self) -> dict[str, Any]:
-        """What ``from_data`` makes the same state of, to the last bit; of the scene only what a run changes."""
+        """The state as plain data, from which ``from_data`` restores it exactly; of the scene only the accuracy."""
         data = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "stage"}
         return data | {"accuracy": self.stage.scene.accuracy, "body": self.stage.body}
 
     @classmethod
     def from_data(cls, data: dict[str, Any], scene: Scene) -> State:
-        """The state again, of a run of the same scene."""
+        """Restore the state from plain data, with the same scene."""
         there = replace(scene, accuracy=data["accuracy"])
         memory: CycleMemory | None = data["memory"]
         stage = Stage(there, data["body"], None if memory is None else memory.background)
         return cls(stage, **{f.name: data[f.name] for f in fields(cls) if f.name != "stage"})
 
     def saved(self) -> dict[str, Any]:
-        """What ``take_back`` needs, should a step fail."""
+        """Data for ``take_back``, in case a step fails."""
         return {
             "stage": self.stage,
             "contour": self.contour,
@@ -197,7 +202,7 @@ class State:
         }
 
     def take_back(self, saved: dict[str, Any]) -> None:
-        """Take a step back, and count it as tried."""
+        """Restore the state before a rejected step, and count the retry."""
         self.work.retries += 1
         contour = saved.pop("contour")
         self.__dict__.update(saved)
@@ -205,12 +210,12 @@ class State:
 
     @property
     def contour(self) -> Outline:
-        """The outline as it is now."""
+        """The present outline."""
         return self.stage.body.contour
 
     @property
     def cells(self) -> Cells | None:
-        """The elements as they are now, of a scene that deactivates some."""
+        """The present elements of a scene that deactivates some; else None."""
         return self.stage.body.now if self.stage.scene.deactivation is not None else None
 
 
@@ -221,38 +226,38 @@ class StrokeReport:
     Attributes
     ----------
     phase : int
-        Which stroke of the cycle.
+        Index of the stroke in the cycle.
     last_stroke, repeats : int
-        Number of the last stroke that this solve stands for, and how many of its kind it stands for.
+        Number of the last stroke for which this solve stands, and the number of strokes of this kind.
     iterations : int
         Newton iterations.
     contacts : dict of str to ContactProfile
-        The followed contacts at equilibrium.
+        The refined contacts at equilibrium.
     forces : dict of str to array, shape (2,)
         Resultants on the part [N, or N/mm].
     heats : dict of str to float
-        Heat of the friction in one stroke, of each contact that has friction [mJ, or mJ/mm].
+        Frictional heat of one stroke, of each contact with friction [mJ, or mJ/mm].
     margins : dict of str to float
-        How far each contact that slides in full is from waves that grow along it [-]: below 0 they do.
+        Stability margin of each contact in full sliding [-]; below 0, waves grow along it.
     coefficients, wear_rates : dict of str to float
-        Mean friction coefficient under the pressure [-] and mean k of the strokes [mm²/N], of the contacts whose law is
-        no constant.
+        Mean friction coefficient, weighted by pressure [-], and mean k over the strokes [mm²/N], of contacts whose law
+        is not constant.
     counters : dict of str to WornProfile
-        Worn profiles of the surfaces that keep one, after the stroke's wear.
+        Profiles of the surfaces that wear, after the stroke.
     leaks : bool
-        Whether the fluid meets no contact.
+        Whether no contact stops the fluid.
     leak_pressure : tuple of float and str, or None
-        Fluid pressure that the contacts hold [MPa], and the edge that would give way first; None if not asked for.
+        Fluid pressure that the contacts hold [MPa], and the edge that would leak first; None if not asked for.
     contour : Outline
-        Outline after the stroke's wear.
+        Outline after the wear of the stroke.
     ledger : Ledger
-        Book after the stroke's wear.
+        Ledger after the wear of the stroke.
     cells : Cells or None
-        Elements after the stroke's wear, where a scene deactivates some.
+        Elements after the wear of the stroke, if the scene deactivates some.
     loaded : dict of str to array
-        Displacement of their points and stresses in them at equilibrium, likewise.
+        Displacement of their points and stresses in them at equilibrium.
     section : dict of str to array
-        The loaded section (``ngwear.loop.section_snapshot``) at strokes that are kept, else empty.
+        The loaded section (``ngwear.loop.section_snapshot``) at strokes that are saved, else empty.
     """
 
     phase: int

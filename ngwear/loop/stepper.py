@@ -1,4 +1,4 @@
-"""The loop: equilibrium of each stroke, wear, new outline, and a new mesh where one is needed."""
+"""Steps of a run: equilibrium of each stroke, wear, new outline, and a new mesh if needed."""
 
 from __future__ import annotations
 
@@ -14,17 +14,15 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
-from ngwear.geometry.body import Body
 from ngwear.loop.element_sizes import chosen, laid_out
 from ngwear.loop.law_changes import steady_cycles
-from ngwear.loop.mounting import mount, refuse_idle_contacts, unworn_body, warn_if_unstable
-from ngwear.loop.refinement import outgrown, wanted_size
+from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unworn_body, warn_if_unstable
+from ngwear.loop.refinement import outgrown
 from ngwear.loop.remeshing import is_due, remesh, still_ahead
 from ngwear.loop.section_snapshot import section_snapshot
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.wear_step import Wearing
-from ngwear.materials import PronySeries
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.wear.cycle_jumps import Plan, planned
@@ -34,26 +32,27 @@ from ngwear.wear.sliding_distance import Strokes
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+# These were settled on the rod seal (NARROWER, FIRST, MAY_COME) and the torn seal (LATE, HARDEST): the list in
+# tests/benchmarks/README.md says by which command.
 NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
 FIRST = 10  # times as long as the first step is the longest one
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
-MAY_COME = 5.0  # patches: how near the surface an outline is that it may touch one day
 
 
 class Stepper:
-    """Run a scene by hand: ``state = stepper.start()``, then ``state = stepper.advance(state)`` until done.
+    """Run a scene step by step: ``state = stepper.start()``, then ``state = stepper.advance(state)``.
 
     Parameters
     ----------
     scene : Scene
     on_mount : callable or None
-        Called with the fraction of the mounting that is done.
+        Called with the completed fraction of the mounting.
 
     Raises
     ------
     SceneError
-        If the scene asks for an error: no single run meets one.
+        If the scene gives ``accuracy.error``: that needs several runs.
     """
 
     def __init__(self, scene: Scene, *, on_mount: Callable[[float], None] | None = None) -> None:
@@ -62,7 +61,7 @@ class Stepper:
             error is None,
             "accuracy.error",
             error,
-            "is met by several runs: use ngwear.error_estimates.run_to_error.run_to_error",
+            "needs several runs: use ngwear.run",
         )
         self.scene, self._across = laid_out(scene), scene.accuracy.across
         self.on_mount = on_mount or (lambda fraction: None)
@@ -74,14 +73,14 @@ class Stepper:
         warn_if_unstable(self.scene)
 
     def start(self) -> State:
-        """Mount the part on a coarse mesh, solve each stroke of the cycle once, and refine to the contact.
+        """Mount the part on a coarse mesh, solve each stroke of the cycle once, and refine the contacts.
 
         Raises
         ------
         ConvergenceError
             If the part cannot be mounted.
         SceneError
-            If a surface that shall wear the part does not touch it in any stroke.
+            If a surface that should wear the part touches it in no stroke.
         """
         scene, accuracy = self.scene, self.scene.accuracy
         stage = Stage(scene, unworn_body(scene, self._across))
@@ -90,7 +89,9 @@ class Stepper:
         longest = max(1, math.ceil(tolerances.longest_jump * cycles))
         if scene.wear.max_jump is not None:
             longest = min(scene.wear.max_jump, longest)
-        first = 1 if scene.deactivation is not None else max(1, longest // FIRST)  # what is pulled too hard tears
+        first = (
+            1 if scene.deactivation is not None else max(1, longest // FIRST)
+        )  # a long first step would tear too much
         control = JumpControl(tolerances.wear_error, depth=tolerances.depth_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
@@ -111,16 +112,16 @@ class Stepper:
             self._settle_cycle(state)
         arms = scene.arms
         if arms is not None:
-            self._remember(state, arms)
+            give_memory(state, scene, arms)
         self.on_mount(1.0)
         return state
 
     def _refine(self, state: State) -> None:
-        """Mesh anew until the mesh is fine where the strokes of the cycle want it."""
+        """Remesh until the mesh is fine enough for all strokes of the cycle."""
         ahead = still_ahead(state)
-        while state.ledger.remeshes < 4:
+        while state.ledger.remeshes < 4:  # more bring little; the run meshes anew where it must
             vectors, laid = [phase.vector for phase in state.phases], state.stage.scene
-            first = state.across is not None and state.ledger.remeshes == 0  # the mounting's mesh may be too fine, too
+            first = state.across is not None and state.ledger.remeshes == 0  # the mounting mesh may also be too fine
             if state.across is not None:
                 state.stage.scene = chosen(state.stage, vectors, state.across)
             narrow = state.stage.scene.accuracy.lengths.patch < NARROWER * laid.accuracy.lengths.patch
@@ -133,7 +134,7 @@ class Stepper:
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
     def _settle_cycle(self, state: State) -> None:
-        """Solve each stroke of the cycle once, on the outline as it is."""
+        """Solve each stroke of the cycle once on the present outline, without wear."""
         state.reports = []
         for i, stroke in enumerate(self.scene.program.cycle):
             sliding = self._strokes(i, 0)
@@ -142,41 +143,19 @@ class Stepper:
             wearing.look()
             state.reports.append(self._observe(state, i, iterations, sliding))
 
-    def _remember(self, state: State, arms: PronySeries) -> None:
-        """Give the rubber its memory, once the mesh is fine: of the mounted part at rest, without fluid pressure."""
-        from ngwear.fields.background_mesh import Background
-        from ngwear.loop.memory_over_cycles import CycleMemory
-
-        scene = self.scene
-        (first, *_), phase = scene.program.cycle, state.phases[0]
-        body = state.stage.body
-        field = wanted_size(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
-        background = Background(Body(body.contour, field))
-        state.stage = stage = Stage(scene, body, background)
-        stage.problem.state.vec.FV().NumPy()[:] = phase.vector
-        stage.begin(phase.vector)
-        stage.problem.set_loads(stage.stroke_loads(first))
-        for term in stage.problem.terms:
-            term.refresh()
-        state.work.add(advance(stage.problem, stage.mounted_loads()))
-        durations = [stroke.duration for stroke in scene.program.cycle]
-        if stage.memory is not None:
-            mounted = stage.memory.stress()
-            state.memory = CycleMemory(background, arms, durations, mounted=mounted, rest=scene.program.rest)
-
     def finished(self, state: State) -> bool:
-        """Whether all strokes of the program are done."""
+        """Whether all strokes of the program are completed."""
         return state.strokes >= self.scene.program.strokes
 
     def advance(self, state: State) -> State:
-        """Take one step: every stroke of the cycle once, each standing for as many as the control allows.
+        """Take one step: solve each stroke of the cycle once, for as many strokes as the error control allows.
 
-        A step that fails, or whose error is too large, is taken back and tried with half the cycles.
+        A step that fails, or whose error is too large, is rejected and tried again with half the cycles.
 
         Raises
         ------
         ConvergenceError, GeometryError, MeshError
-            When a single cycle fails; the state is the last accepted one.
+            If a step of one cycle fails; the state is then the last accepted one.
         """
         program, most = self.scene.program, self.scene.program.strokes
         while True:
@@ -192,7 +171,7 @@ class Stepper:
                 if cycles == 1:
                     state.take_back(saved)
                     raise
-                log.info("step of %d cycles failed (%s); trying half", cycles, error)
+                log.info("step of %d cycles failed (%s); half as many are tried", cycles, error)
                 ratio = math.inf
             if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
                 state.take_back(saved)
@@ -206,7 +185,7 @@ class Stepper:
             return state
 
     def _look(self, state: State) -> None:
-        """Report the strokes of the cycle other than the last one on the present outline; changes nothing else."""
+        """Solve the other strokes of the cycle on the present outline and add their reports; nothing else changes."""
         latest = state.reports[-1].phase
         for i in range(len(self.scene.program.cycle)):
             if i != latest:
@@ -216,7 +195,7 @@ class Stepper:
         self.stand(state)
 
     def look_ahead(self, state: State) -> list[StrokeReport]:
-        """Solve the next cycle's strokes on the present outline, in their order; state and memory are theirs then."""
+        """Solve the strokes of the next cycle without wear; this changes the states and the memory of ``state``."""
         plan, reports = self._next_cycle(state), []
         for i, _ in plan:
             reports.append(self._seen(state, i, plan))
@@ -225,7 +204,7 @@ class Stepper:
         return reports
 
     def stand(self, state: State) -> None:
-        """Let the part stand as at the end of the last stroke."""
+        """Set the problem to the loads and the equilibrium at the end of the last stroke."""
         problem, latest = state.stage.problem, state.reports[-1].phase
         problem.set_loads(state.stage.stroke_loads(self.scene.program.cycle[latest]))
         problem.state.vec.FV().NumPy()[:] = state.phases[latest].vector
@@ -237,7 +216,7 @@ class Stepper:
         return planned(kinds, state.strokes, 1, state.strokes + kinds)
 
     def _seen(self, state: State, index: int, plan: Plan) -> StrokeReport:
-        """A stroke of the cycle on the present outline, without wear."""
+        """Solve a stroke of the cycle on the present outline, without wear."""
         state.phases[index] = replace(state.phases[index], rate=None)
         sliding = self._strokes(index, state.strokes)
         Wearing.begin(state, index, sliding)
@@ -245,9 +224,9 @@ class Stepper:
         return self._observe(state, index, iterations, sliding)
 
     def _step(self, state: State, cycles: int) -> float:
-        """Solve and wear each stroke of the cycle; return the step's relative error of worn area (nan if unknown).
+        """Solve each stroke of the cycle with its wear; return the relative error of worn area (nan: unknown).
 
-        It is infinite if something is torn too late, within a jump.
+        It is infinite if an element would be torn too late within a jump.
         """
         cycle, memory = self.scene.program.cycle, state.memory
         plan = planned(len(cycle), state.strokes, cycles, self.scene.program.strokes)
@@ -294,7 +273,7 @@ class Stepper:
         return (state.ledger.area_error - error_before) / worn if worn > 0 else 0.0
 
     def _strokes(self, kind: int, done: int, repeats: int = 0) -> Strokes:
-        """Strokes of a kind, the first of which begins after ``done`` strokes of any."""
+        """Sliding of ``repeats`` strokes of a kind; the first begins after ``done`` strokes of all kinds."""
         program = self.scene.program
         return Strokes(program.slid(done), program.cycle[kind].travel, program.slid(len(program.cycle)), repeats)
 
@@ -307,9 +286,9 @@ class Stepper:
         *,
         plan: Plan = (),
     ) -> int:
-        """Bring one stroke of the cycle to equilibrium, its wear over ``sliding`` implicit; return iterations.
+        """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
 
-        ``plan`` is the step's, for the memory.
+        ``plan`` is the plan of the step, for the memory.
         """
         stage, phase = state.stage, state.phases[index]
         problem = stage.problem
@@ -346,14 +325,14 @@ class Stepper:
         return work.iterations
 
     def _guess(self, state: State, vector: Array) -> None:
-        """Start the next solve from a vector; where elements are lost or wear has made them thin, they are unfolded."""
+        """Set the first guess of the next solve; inverted elements are unfolded if the scene deactivates elements."""
         problem = state.stage.problem
         problem.state.vec.FV().NumPy()[:] = vector
         if self.scene.deactivation is not None:
             unfold(problem)
 
     def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
-        """What there is to see at the stroke's equilibrium."""
+        """Report of the stroke's equilibrium, before its wear."""
         stage = state.stage
         kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
         return StrokeReport(
@@ -378,9 +357,9 @@ class Stepper:
         )
 
     def _approach(self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool) -> None:
-        """Reach a stroke's equilibrium in steps: from its last state, else from the stroke before it in the cycle.
+        """Reach a stroke's equilibrium in load steps: from its last state, else from the previous stroke of the cycle.
 
-        Where the stroke stands for several, hard ways are left early: fewer strokes at once are easier.
+        In a jump the search ends at a larger load step, because fewer strokes in one solve are easier.
         """
         stage, cycle = state.stage, self.scene.program.cycle
         options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
@@ -392,7 +371,7 @@ class Stepper:
                 work.add(relax(problem, options))
                 return
             except ConvergenceError as error:
-                log.info("%s: trying from the stroke before", error)
+                log.info("%s: trying from the previous stroke", error)
         self._guess(state, state.phases[index - 1].vector)
         problem.set_loads(stage.stroke_loads(cycle[index - 1]))
         stage.begin(vector)

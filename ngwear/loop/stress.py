@@ -1,4 +1,4 @@
-"""Cauchy stress of the present state as a coefficient function of NGSolve."""
+"""Cauchy stress of the present state as an NGSolve CoefficientFunction."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ def cauchy_stress(stage: Stage) -> Any:
     """Cauchy stress of the hyperelastic part, a 3 x 3 coefficient function [MPa] on the undeformed mesh.
 
     ``sigma = 2/J dev((psi_1 + I1 psi_2) b - psi_2 b^2) + (Ks (J - 1) + p) I`` with ``b = J^(-2/3) F F^T``, its
-    invariants, the slopes psi_i of the isochoric energy by them, and the unknown p of ``effects.elasticity``. The third
-    row and column are out of the section: along the circumference, or across the plane.
+    invariants I_i, the derivatives psi_i of the isochoric energy by them, and the unknown p of ``effects.elasticity``.
+    The third row and column are the hoop direction of a ring, or normal to a plane section.
 
     Parameters
     ----------
     stage : Stage
-        It follows the stage's state: solve another stroke, and the same object gives that one's stress.
+        The function uses the present state of the stage: after another solve it gives the new stress.
     """
     problem, elasticity = stage.problem, stage.elasticity
     u, p = problem.fields[DISPLACEMENT], problem.fields[VOLUMETRIC_STRESS]

@@ -1,9 +1,9 @@
-"""What the time step of rubber with memory errs by: the next cycle once more, each solve's time in two halves.
+"""Error by the time step of rubber with memory: the next cycle is solved again with half the time step.
 
-A solve stands for a stroke, or a part of it, in which the strain is taken to stand still (``cycle_memory``). What the
-means over the halves change tells what it errs by, on the same mesh and outline: nothing else differs.
+In one solve, of a stroke or a part of it, the strain is constant (``ngwear.loop.memory_over_cycles``). The change of
+the mean values with half the time step, on the same mesh and outline, gives the error.
 
-Taken as of first order: twice that change is stated (``ngwear verify stroke_memory`` compares with steps much finer).
+First order is assumed: the error is twice that change. ``ngwear verify stroke_memory`` compares with much finer steps.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from ngwear.results.quantities_of_interest import AREA, BY_TIME_STEP, DEPTH, FRI
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.program import whole_name
 
-REMAINS = 2.0  # of first order: the error over what halves change
+REMAINS = 2.0  # of first order: the error over what halves change, 1 / (1 - 1/2)
 Read = dict[str, dict[str, ArrayLike]]
 
 
 def time_step_errors(state: State) -> dict[str, float]:
-    """Relative error of depth, area, pressure and friction by the time step, by their names in the summary.
+    """Relative errors of depth, area, pressure and friction by the time step, by their names in the summary.
 
-    Of the depth, it is that of what the zone of the deepest place wears in a cycle: pressures move about within it, and
-    its wear follows them until they are even again. Of the peak pressure, it is that of the mean pressure by load:
-    nodal peaks scatter by more, and so do the ends of contacts, which are left out.
+    The error of the depth is that of the wear per cycle of the contact zone with the deepest place: within a zone, wear
+    evens out the pressures. The error of the peak pressure is that of the mean pressure, weighted by load, because
+    nodal peaks scatter by more. Contact widths scatter too and are not compared.
 
     Parameters
     ----------
     state : State
-        Of a run with memory, after its last stroke.
+        State of a run with memory after its last stroke.
 
     Raises
     ------
@@ -43,7 +43,7 @@ def time_step_errors(state: State) -> dict[str, float]:
         If a stroke of that cycle has no equilibrium.
     """
     try:
-        whole, halves = ahead(state), ahead(in_halves(state))  # from the same start
+        whole, halves = ahead(state), ahead(in_halves(state))  # both from the same state
     finally:
         Stepper(state.stage.scene).stand(state)
     deepest = _deepest(whole)
@@ -52,7 +52,7 @@ def time_step_errors(state: State) -> dict[str, float]:
 
 
 def ahead(state: State) -> State:
-    """The next cycle, with the strokes seen in it as its reports; neither wear nor work of the run's."""
+    """Solve the next cycle on a copy of the state, without wear; its ``reports`` are the strokes."""
     there = copy(state)
     there.work, there.phases, there.memory = copy(state.work), list(state.phases), copy(state.memory)
     there.reports = Stepper(state.stage.scene).look_ahead(there)
@@ -60,7 +60,7 @@ def ahead(state: State) -> State:
 
 
 def in_halves(state: State) -> State:
-    """The same with each stroke, or each part that it is solved in, in two."""
+    """The same state with each stroke, or part of a stroke, divided into two halves."""
     there, stage = copy(state), copy(state.stage)
     accuracy = stage.scene.accuracy
     stage.scene = replace(stage.scene, accuracy=replace(accuracy, parts=2 * accuracy.parts))
@@ -71,7 +71,7 @@ def in_halves(state: State) -> State:
 
 
 def _deepest(state: State) -> tuple[str, slice] | None:
-    """Contact and nodes of the zone that wears the deepest place; None if none does."""
+    """Contact and nodes of the zone at the deepest place; None if nothing wears there."""
     wearing = [spec.name for spec in state.stage.scene.contacts if spec.wears]
     if state.depths is None or not wearing:
         return None
@@ -86,7 +86,7 @@ def _deepest(state: State) -> tuple[str, slice] | None:
 
 
 def _read(state: State, deepest: tuple[str, slice] | None) -> Read:
-    """Means over each stroke that was given, and loads over ways of the cycle, which wear."""
+    """Mean values over each given stroke, and load times travel over the cycle, to which wear is proportional."""
     scene = state.stage.scene
     out: Read = {}
     cycle = scene.program.cycle
@@ -106,5 +106,5 @@ def _read(state: State, deepest: tuple[str, slice] | None) -> Read:
 
 
 def _mean_pressure(profile: ContactProfile) -> float:
-    """By load [MPa]; 0 out of contact."""
+    """Mean pressure weighted by load [MPa]; 0 without contact."""
     return float(profile.pressure @ profile.load / profile.load.sum()) if profile.load.any() else 0.0

@@ -1,4 +1,4 @@
-"""The wear of one solve: an outline foreseen, a depth worn within the solve, and the outline after it."""
+"""Wear of one solve: predicted outline, implicit depth in the solve, and the outline after it."""
 
 from __future__ import annotations
 
@@ -24,33 +24,34 @@ from ngwear.wear.sliding_distance import Strokes
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
+# Beyond, a contact has only begun to spread, or the mesh shows; checked by ``tests/stability`` (wearing.py).
 CALM = 0.1  # error of a step over what it wears, up to which the next one may rely on it
-AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it
+AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it; a shorter step heals less
 
 
 @dataclass
 class Wearing:
-    """The wear of strokes that one solve stands for: ``begin``, solve, ``take``.
+    """Wear of the strokes for which one solve stands: ``begin``, solve, ``take``.
 
-    Implicit wear of second order in the step. The outline is foreseen: it moves to where the mean pressure of the last
-    step would take it, so that the rubber is as thin, and lies where, it will at the end of the step's last stroke; the
-    depth of the solve is counted from there. Then ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in
+    Implicit wear of second order in the step. The outline is predicted: it moves by the wear at the mean pressure of
+    the last step, so that the rubber has about the thickness and position of the end of the step. The depth in the
+    solve is measured from the predicted outline: ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in
     ``wear.backward_differences``. Where friction may stick, and after a step whose error is large or not known, it is
-    backward Euler on the outline as it was: of first order, and sound where a contact has only begun to spread.
+    backward Euler without a predicted outline: first order, and reliable where a contact begins to spread.
 
     Attributes
     ----------
     outline : Outline
-        Before the wear.
+        Outline before the wear.
     own : array, shape (contacts,)
-        Weight of the pressure at the step's end, 1 - a [-].
+        Weight of the pressure at the end of the step, 1 - a [-].
     last : array, shape (contacts, n)
-        Depth at each point of the outline worn by the last step's mean pressure, ``kappa a q_0`` [mm].
+        Depth at the points of the outline by the mean pressure of the last step, ``kappa a q_0`` [mm].
     ahead : array, shape (contacts, n)
-        Depth taken off in the foreseen outline [mm].
+        Depth between the outline and the predicted outline [mm].
     coming : array, shape (n,)
-        Depth that the step's later strokes are to wear, where the nodes cannot follow to the foreseen outline [mm]: the
-        solve leaves that much air, and no outline lags behind by what half the step wears.
+        Depth that later strokes of the step will wear, if the nodes cannot move to the predicted outline [mm]; the
+        solve leaves it as a gap.
     """
 
     state: State
@@ -64,9 +65,10 @@ class Wearing:
 
     @classmethod
     def begin(cls, state: State, index: int, sliding: Strokes, *, later: dict[int, Strokes] | None = None) -> Wearing:
-        """Foresee the outline of a stroke of the cycle and let its contacts wear in the next solve.
+        """Predict the outline of a stroke of the cycle, and set the wear of its contacts for the next solve.
 
-        ``later`` are the strokes of other kinds that are to come in this step and lie before the last one of this kind.
+        ``later`` are the strokes of other kinds in this step that come after this solve, before the last stroke of this
+        kind.
         """
         scene, phase, outline = state.stage.scene, state.phases[index], state.contour
         n, count = len(outline), len(scene.contacts)
@@ -90,21 +92,21 @@ class Wearing:
 
     @property
     def halfway(self) -> Outline:
-        """Between the outline and the foreseen one, where a depth sweeps the area of its length times itself.
+        """Outline midway between the outline and the predicted one; there, worn area is depth times length.
 
-        By the lengths of the outline before, convex places would wear too deep; by those after, ripples would grow.
+        With the lengths of the old outline convex places would wear too deep; with those of the new one ripples grow.
         """
         return self.outline.moved(0.5 * (self.state.contour.points - self.outline.points))
 
     @property
     def ways(self) -> Array:
-        """``int k ds`` over the highest k of each contact [mm]."""
+        """Equivalent sliding distance of each contact, ``int k ds / max k`` [mm]."""
         return self._ways(self.sliding)
 
     def _foreseen(self, kind: int, sliding: Strokes) -> Array:
-        """Depth that the mean pressure of a kind's last step wears at the points of the outline [mm], each contact.
+        """Depth at the outline points by the mean pressure of the last step of a kind of stroke [mm], each contact.
 
-        None where friction may stick: what has slipped may stick now.
+        Zero where friction may stick: a place that has slipped may stick now.
         """
         stage, worn = self.state.stage, self.state.phases[kind].worn
         if worn is None:
@@ -127,16 +129,16 @@ class Wearing:
                 raise GeometryError("the outline needs other points")
             self.state.stage.body.move_to(foreseen)
         except (GeometryError, MeshError) as error:
-            log.info("%s: the outline is not foreseen", error)
+            log.info("%s: the step is done without a predicted outline", error)
             self.coming = coming
             return
         moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
         self.ahead = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
 
     def look(self) -> None:
-        """Note what the present pressures would wear, so that the first step's error is known; takes nothing.
+        """Store the wear rate at the present pressures, for the error of the first step; wears nothing.
 
-        Nothing where friction may stick: what slips is not known yet.
+        Not done if friction may stick: the slip is not known yet.
         """
         scene, phase = self.state.stage.scene, self.state.phases[self.index]
         if self.state.stage.remembers:
@@ -150,9 +152,9 @@ class Wearing:
         phase.worn = LastWear(pressure=pressure, mean=none, area=no_contact, ways=no_contact)
 
     def _rate(self, spec: Contact, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
-        """A contact's profile, and the depth a way of one would wear at its nodes by the present pressures [-].
+        """A contact's profile, and worn depth over sliding distance at its nodes by the present pressures [-].
 
-        Explicit steps are the classic ones, by lumped pressures: the sharper ones would break up at smaller steps.
+        Explicit steps use lumped nodal pressures; consistent ones are unstable at shorter steps.
         """
         stage = self.state.stage
         contact = stage.contacts[spec.name]
@@ -164,11 +166,10 @@ class Wearing:
         return profile, rate / contact.at_nodes(stage.elasticity.volume_ratio())
 
     def _book_depths(self, worn: Array, error: Array) -> None:
-        """Add a step's depth and its error at the points of the outline to the run's [mm].
+        """Add depth and error of a step at the points of the outline to those of the run [mm].
 
-        Where a scene lets cycles be jumped, single ones are what it asks for: only jumps err. The greatest depth grows
-        by what it does at the points of this step: those of a new mesh may miss the deepest place of the one before,
-        and that is nothing that a step wears, or errs by.
+        With ``wear.step = "jump"`` a step of one cycle has no error: only jumps count. The ledger adds the increase of
+        the maximum depth over the points of this step, because the points of a new mesh may miss the deepest place.
         """
         state = self.state
         asked = state.stage.scene.wear.step == "jump" and self.sliding.repeats <= 1
@@ -180,19 +181,18 @@ class Wearing:
         state.ledger.depth_error += float((depth - exact) - (last - last_exact))
 
     def take(self) -> bool:
-        """Take the worn area off the outline; return whether its error is known.
+        """Remove the worn area from the outline; return whether its error is known.
 
-        The error of the area is the difference from the trapezoidal rule at the mesh's nodes, its absolute values over
-        the outline added up: how mesh edges bulge in turn, and settle, is no matter of the steps' length. That of the
-        depth at a point is what this tells of the step itself (``wear.backward_differences``), with its sign: steps
-        that wear too much here and too little there, or then, have partly made up for it.
+        The error of the area is the difference from the trapezoidal rule at the nodes of the mesh, summed over the
+        outline in absolute value; the shape between the nodes does not depend on the step. The error of the depth at a
+        point is the estimate of ``wear.backward_differences`` with its sign, so that errors of opposite sign cancel.
 
         Raises
         ------
         GeometryError
-            If the outline had to be healed and missed the worn area by it.
+            If the outline had to be healed and the removed area differs too much from the worn area.
         MeshError
-            If the nodes cannot follow any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
+            If the nodes cannot move any further and ``Wear.remesh`` is ``"never"``, or a new mesh fails.
         """
         state, outline, phase = self.state, self.outline, self.state.phases[self.index]
         last = phase.worn
@@ -217,7 +217,7 @@ class Wearing:
             profile, rate = self._rate(spec, shares)
             amount = rate * profile.weight
             mine = worn_share(halfway, profile, amount) / width
-            before = 1.0  # a depth of the last step's, on an outline that has shrunk or grown since
+            before = 1.0  # rescales the last depth to an outline whose length has changed
             if last is not None and last.mean[k].any():
                 before = last.area[k] / (last.mean[k] * width).sum()
             area = (self.own[k] * ways[k] * mine + before * self.last[k]) * width
@@ -250,7 +250,7 @@ class Wearing:
         state.ledger.worn += worn
         if abs(removed - worn) > AREA_GATE * worn:
             raise GeometryError(
-                f"the outline lost {removed:.4g} mm² where the law wears {worn:.4g} mm²: healing took too much"
+                f"the outline lost {removed:.4g} mm², but the law wears {worn:.4g} mm²: its repair removed too much"
             )
         state.ledger.removed += removed
         state.ledger.moment += polygon_moment(outline.points) - polygon_moment(new.points)
@@ -259,7 +259,7 @@ class Wearing:
 
 
 def _follow(state: State, outline: Outline, worn: Outline) -> None:
-    """Let the mesh follow to a worn outline; make a new mesh where it cannot, unless the scene forbids it."""
+    """Move the mesh to the worn outline; remesh if that fails, unless the scene forbids it."""
     body, why = state.stage.body, "the outline needs other points"
     if len(worn) == len(outline):
         try:
@@ -270,8 +270,8 @@ def _follow(state: State, outline: Outline, worn: Outline) -> None:
     if state.stage.scene.wear.remesh == "never":
         deepest = np.linalg.norm(outline.points - body.base.points, axis=1).max()
         raise MeshError(
-            f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; go on with new meshes "
-            "by wear.remesh = 'limit' or 'due', or begin with larger elements (accuracy.patch)"
+            f"the top layer of elements is used up at a depth of {deepest:.4g} mm: {why}; allow remeshing "
+            "by wear.remesh = 'limit' or 'due', or use larger elements (accuracy.patch)"
         )
     refuse_worn_through(worn)
     log.info("%s: a new mesh is needed", why)

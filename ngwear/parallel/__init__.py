@@ -1,1 +1,1 @@
-"""Processes beside this one, and one function at many points."""
+"""Worker processes, and evaluation of a function at many points in parallel."""

@@ -1,4 +1,4 @@
-"""One function at many points: in parallel, resumable, and no failure loses the rest."""
+"""Evaluate a function at many points in parallel; resumable, and a failure does not stop the others."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ IMPORTABLE = "define it at the top of a module; functools.partial(function, fixe
 
 @dataclass(frozen=True)
 class Failure:
-    """What went wrong at a point: the error's class, its message, and the traceback as text."""
+    """Error at a point: its class, message and traceback, as text."""
 
     kind: str
     message: str
@@ -39,7 +39,7 @@ class Failure:
 
     @classmethod
     def of(cls, error: BaseException) -> Failure:
-        """From an exception."""
+        """Build from an exception."""
         return cls(type(error).__name__, str(error), "".join(traceback.format_exception(error)))
 
 
@@ -51,7 +51,7 @@ class Outcome:
     ----------
     point : object
     result : object
-        What the function returned; None if it failed.
+        Return value of the function; None if it failed.
     failure : Failure or None
     restored : bool
         Whether the result was read from the folder.
@@ -81,36 +81,37 @@ def sweep(
 ) -> list[Outcome]:
     """Evaluate ``function(point)`` at each point; outcomes in the order of the points.
 
-    A point that raises, or takes its worker process down, comes back as an outcome with a failure; the others go
-    on. As always with processes that are spawned, a script calls this under ``if __name__ == "__main__"``.
+    A point that raises an error, or ends its worker process, gives an outcome with a failure; the others continue.
+    As always with spawned processes, a script must call this under ``if __name__ == "__main__"``.
 
     Parameters
     ----------
     function : callable
-        Of one point. For processes it must be importable, and what it returns must pickle. For a folder it must return
-        numbers, text, lists, tuples, dicts, NumPy arrays, or dataclasses of these that are among ``classes``.
+        Function of one point. For processes it must be importable, and its return value must pickle. For a folder it
+        must return numbers, text, lists, tuples, dicts, NumPy arrays, or dataclasses of these that are among
+        ``classes``.
     points : iterable
     executor : concurrent.futures.Executor or None
-        Any, such as a Dask client's ``client.get_executor()``; it is left open. By default spawned processes of
-        one thread each.
+        Any executor, such as ``client.get_executor()`` of Dask; it is not closed. Default: spawned processes with one
+        thread each.
     workers : int or None
-        How many of these; by default as many as cores.
+        Number of processes; default: number of cores.
     folder : path or None
-        Each result is written there as soon as it is known, under a digest of function and point.
+        Folder to which each result is written at once; the file name is a digest of function and point.
     resume : bool
-        Take from the folder what an earlier sweep with this function (its name and fixed arguments; changes of its
-        code are not seen) finished there; what failed is tried again.
+        Use results of an earlier sweep with the same function in the folder (compared by name and fixed arguments, not
+        by its code); failed points are tried again.
     progress : bool
         Show a progress bar.
     classes : iterable of type
-        The dataclasses and enumerations that results are made of: nothing else is made of what a folder's files hold.
+        Dataclasses and enumerations in the results; files of the folder can create objects of no other class.
 
     Raises
     ------
     SceneError
-        If there are no points, or function or a point cannot be sent to a process or told from another.
+        If there are no points, or the function or a point cannot be pickled.
     ResultError
-        If the folder cannot be used, or a file in it not be read.
+        If the folder cannot be used, or a file in it cannot be read.
     """
     points, classes = list(points), tuple(classes)
     _check(points, executor, workers, folder, resume)
@@ -142,7 +143,7 @@ def sweep(
 
 
 def _attempt(function: Callable[[Any], Any], point: Any) -> Any:
-    """What runs in the worker: errors travel as text, since not every exception survives pickling."""
+    """Called in the worker; errors are returned as text, because not every exception can be pickled."""
     try:
         return function(point)
     except Exception as error:
@@ -155,9 +156,9 @@ Keep = Callable[[int, Any], None]
 def _feed(
     executor: Executor, function: Any, points: list[Any], waiting: deque[int], most: int, keep: Keep
 ) -> list[tuple[int, BaseException]]:
-    """Work off ``waiting``, at most so many at a time, until done or broken; what a broken executor was at is returned.
+    """Evaluate the points in ``waiting``, at most ``most`` at a time; return those lost by a broken executor.
 
-    Only what is under way is lost with it: the rest stays in ``waiting``.
+    Only running points are lost; the others stay in ``waiting``.
     """
     running: dict[Future[Any], int] = {}
     lost: list[tuple[int, BaseException]] = []
@@ -183,7 +184,7 @@ def _in_processes(function: Any, points: list[Any], waiting: Iterable[int], work
     while queue:
         with one_thread_pool(min(workers, len(queue))) as pool:
             lost = _feed(pool, function, points, queue, workers, keep)
-        for i, _ in lost:  # one of them took its worker down: which one shows when each is alone
+        for i, _ in lost:  # one of them ended its worker; each alone shows which one
             with one_thread_pool(1) as pool:
                 again = _feed(pool, function, points, deque([i]), 1, keep)
             for _, error in again:
@@ -191,7 +192,7 @@ def _in_processes(function: Any, points: list[Any], waiting: Iterable[int], work
 
 
 class _Store:
-    """Results in a folder, one file a point, each written at once and whole."""
+    """Results in a folder, one file for each point, replaced as a whole."""
 
     def __init__(self, path: Path, classes: tuple[type, ...], *, resume: bool) -> None:
         self.folder, self.classes = OutFolder(path, "", resume=True), classes
@@ -211,7 +212,7 @@ class _Store:
             raise ResultError(f"the result of the point {point!r} is lost: {error}") from error
 
     def save(self, key: str, result: Any) -> Any:
-        """The result, or the failure to write it."""
+        """Return the result, or a Failure if it cannot be written."""
         try:
             members = packed(result, FORMAT, self.classes)
         except ResultError as error:
@@ -221,10 +222,10 @@ class _Store:
 
 
 def _digest(function: Any, point: Any) -> str:
-    """Of function and point as they pickle."""
+    """Digest of the pickled function and point."""
     data = io.BytesIO()
     pickler = pickle.Pickler(data, protocol=5)
-    pickler.fast = True  # no memo: two equal strings are written alike, whether or not they are one object
+    pickler.fast = True  # no memo: equal strings are written equally, even if they are different objects
     for what, value in (("function", function), ("point", point)):
         try:
             pickler.dump(value)
@@ -241,7 +242,7 @@ def _check(points: list[Any], executor: Any, workers: Any, folder: Any, resume: 
     if workers is not None and executor is not None:
         raise SceneError("sweep.workers", workers, "an executor has its own workers: give one or the other")
     if resume and folder is None:
-        raise SceneError("sweep.resume", resume, "needs the folder of the earlier sweep")
+        raise SceneError("sweep.resume", resume, "needs the folder of the earlier sweep: give folder")
 
 
 def _check_classes(classes: tuple[type, ...]) -> None:
@@ -252,13 +253,13 @@ def _check_classes(classes: tuple[type, ...]) -> None:
 
 
 def _check_importable(function: Any) -> None:
-    """A function typed into a session or notebook exists in no file that a spawned process could import."""
+    """SceneError for a function of a session or notebook, which a spawned process cannot import."""
     inner = function
     while isinstance(inner, functools.partial):
         inner = inner.func
     where = getattr(inner, "__module__", type(inner).__module__)
     if where == "__main__" and not hasattr(sys.modules["__main__"], "__file__"):
-        remedy = f"a worker process cannot import what was typed into a session or notebook: {IMPORTABLE}"
+        remedy = f"a worker process cannot import a function of a session or notebook: {IMPORTABLE}"
         raise SceneError("sweep.function", function, remedy)
 
 

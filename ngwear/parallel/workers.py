@@ -1,4 +1,4 @@
-"""Processes beside this one, of one thread each. Light to load: a worker may begin before the libraries do."""
+"""Worker processes with one thread each. Imports little, so that a worker can start before libraries are loaded."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ ONE_THREAD = ("NGS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS
 
 
 class Worker:
-    """A spawned process that loads modules and then does what it is told, one thing after the other.
+    """A spawned process that imports modules and then calls functions, one after the other.
 
-    Begun before this process loads its own libraries, both load at the same time. A function that raises an error of
-    ngwear's own has failed; with any other error the process ends.
+    If it is started first, both processes load their libraries at the same time. A function that raises NgwearError has
+    failed; any other error ends the process.
     """
 
     def __init__(self, *modules: str) -> None:
@@ -37,25 +37,25 @@ class Worker:
         its.close()
 
     def do(self, function: Callable[..., object], *arguments: Any) -> None:
-        """Let it call a function of a module, or of its objects, once it has done what it was told before."""
+        """Let it call a function of a module, or a method of an object there, after all earlier calls."""
         self._owing += 1
-        with suppress(OSError):  # it has ended: whoever waits for its work sees that
+        with suppress(OSError):  # it has ended; ``alive`` and ``did`` show that
             self._pipe.send((function, arguments))
 
     @property
     def idle(self) -> bool:
-        """Whether it is there and has done all that it was told."""
+        """Whether it is running and has completed all calls."""
         self._hear(0)
         return self.alive and not self._owing
 
     def did(self) -> bool:
-        """Wait until it has done all that it was told; whether the last of it has not failed."""
+        """Wait for all calls; return whether the last one succeeded."""
         while self._owing and self._hear(None):
             pass
         return not (self._owing or self._failed)
 
     def _hear(self, timeout: float | None) -> bool:
-        """Take in what it says; False if it has ended."""
+        """Receive its replies; False if it has ended."""
         with suppress(EOFError, OSError):
             while self._owing and self._pipe.poll(timeout):
                 self._failed = self._pipe.recv()
@@ -65,11 +65,11 @@ class Worker:
 
     @property
     def alive(self) -> bool:
-        """Whether it has not ended."""
+        """Whether the process is running."""
         return self._process.is_alive()
 
     def end(self) -> None:
-        """Stop it, wherever it is."""
+        """Terminate the process."""
         self._pipe.close()
         if self.alive:
             self._process.terminate()
@@ -80,7 +80,7 @@ def _work(pipe: Connection, modules: tuple[str, ...]) -> None:
     end_with_parent()
     for module in modules:
         import_module(module)
-    with suppress(EOFError):  # there is nothing more to do
+    with suppress(EOFError):  # the pipe is closed
         while True:
             function, arguments = pipe.recv()
             try:
@@ -93,7 +93,7 @@ def _work(pipe: Connection, modules: tuple[str, ...]) -> None:
 
 @contextmanager
 def _without_script() -> Iterator[None]:
-    """Let a process that begins within not run this one's script again: it is told functions of modules only."""
+    """Context in which a started process does not run the main script again; it calls functions of modules only."""
     script = sys.modules["__main__"]
     before = {name: getattr(script, name) for name in ("__file__", "__spec__") if hasattr(script, name)}
     script.__spec__ = None
@@ -107,7 +107,7 @@ def _without_script() -> Iterator[None]:
 
 
 def of_modules(value: object) -> bool:
-    """Whether another process can be sent a value: none of its classes stands in this process's script."""
+    """Whether a value can be sent to another process: none of its classes is defined in the main script."""
     try:
         return b"__main__" not in pickle.dumps(value)
     except (pickle.PicklingError, AttributeError, TypeError):
@@ -116,7 +116,7 @@ def of_modules(value: object) -> bool:
 
 @contextmanager
 def one_thread_pool(workers: int) -> Iterator[Executor]:
-    """Spawned workers of one thread each."""
+    """Pool of spawned processes with one thread each."""
     from concurrent.futures import ProcessPoolExecutor
 
     with (
@@ -128,7 +128,7 @@ def one_thread_pool(workers: int) -> Iterator[Executor]:
 
 @contextmanager
 def one_thread() -> Iterator[None]:
-    """Let processes that begin within have one thread each: libraries read that from the environment as they load."""
+    """Context in which started processes use one thread; libraries read this from the environment when loaded."""
     before = {name: os.environ.get(name) for name in ONE_THREAD}
     os.environ.update(dict.fromkeys(ONE_THREAD, "1"))
     try:
@@ -142,9 +142,9 @@ def one_thread() -> Iterator[None]:
 
 
 def end_with_parent() -> None:
-    """Let a worker end when the process that feeds it is killed; else it would wait for work for ever.
+    """End a worker when its parent process ends; otherwise it would wait forever.
 
-    Its progress bars, shown or not, lock by thread: tqdm's own lock is a semaphore, which an ended worker leaves.
+    Also give tqdm a thread lock: its default is a semaphore, which remains after a worker is ended.
     """
     from tqdm import tqdm
 

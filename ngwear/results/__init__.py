@@ -1,1 +1,1 @@
-"""What a run leaves: records, files, what is read off them, and their extrapolation to zero element edge."""
+"""Results of a run: records, files, quantities of interest, and Richardson extrapolation."""

@@ -1,11 +1,14 @@
-"""The short table that a run closes with: what it found, with its error beside it, and what it took."""
+"""The table at the end of a run: quantities with their errors, and cost of the run."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-SAME_ERROR = {"worn volume": "worn area", "penetration": "maximum depth"}  # of quantities in proportion to others
+SAME_ERROR = {
+    "worn volume": "worn area",
+    "penetration": "maximum depth",
+}  # quantities with the same relative error as another one
 TOOK = ("solves", "retries", "remeshes", "elements", "wall time [s]", "CPU time [s]", "peak memory [MB]")
 NOT_FOUND = {
     "strokes",
@@ -20,12 +23,12 @@ NOT_FOUND = {
 
 
 def closing_table(summary: Mapping[str, Any]) -> str:
-    """Lay out a summary as text: name with unit, value, and the stated relative error where there is one.
+    """A summary as text: name with unit, value, and estimated relative error if there is one.
 
     Parameters
     ----------
     summary : mapping
-        As in ``summary.json``.
+        Contents of ``summary.json``.
     """
     return "\n".join(_lines(summary))
 
@@ -49,7 +52,7 @@ def _lines(summary: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _error(quantity: str, errors: Mapping[str, float]) -> float | None:
-    """The error stated of a quantity, or of the kind of quantity that it is one of."""
+    """The error of a quantity, or of its kind, such as of a peak pressure in one stroke."""
     if quantity.startswith("first"):
         return None
     for error, value in errors.items():

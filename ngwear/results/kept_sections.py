@@ -1,4 +1,4 @@
-"""The loaded sections that a run has kept, by stroke and kind."""
+"""The loaded sections that a run has saved, by stroke and kind."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ from ngwear.surfaces import RigidSurface
 
 @dataclass(frozen=True)
 class KeptSections:
-    """Strokes of a run whose loaded section is known.
+    """Strokes of a run whose loaded section is saved.
 
     Attributes
     ----------
     scene : str
-        Name.
+        Name of the scene.
     snapshots : sequence of Snapshot
     surfaces : dict of str to RigidSurface
-        Of the contacts, in their final place.
+        Surface of each contact in its final position.
     """
 
     scene: str
@@ -30,7 +30,7 @@ class KeptSections:
 
     @classmethod
     def of(cls, result: ResultFile) -> KeptSections:
-        """Those of a result file."""
+        """The sections in a result file."""
         return cls(result.scene, [s for s in result.snapshots if s.section], result.surfaces)
 
     def __bool__(self) -> bool:
@@ -38,21 +38,21 @@ class KeptSections:
 
     @property
     def main_kind(self) -> str:
-        """The stroke of the cycle under the highest fluid pressure; the first of those that are alike."""
+        """Name of the stroke with the highest fluid pressure; the first one if several are equal."""
         first = {s.kind: s for s in reversed(self.snapshots)}
         kinds = list(dict.fromkeys(s.kind for s in self.snapshots))
         return max(kinds, key=lambda kind: Section.of(first[kind].section).fluid_pressure)
 
     def at(self, stroke: float | None = None, kind: str | None = None) -> Snapshot:
-        """The section at a stroke, the latest unless given, of a kind, ``main_kind`` unless given.
+        """The section at a stroke (default the last) of a kind (default ``main_kind``).
 
         Raises
         ------
         ResultError
-            If it is not kept, with those that are.
+            If it is not saved; the message lists those that are.
         """
         if not self:
-            raise ResultError(f"the run '{self.scene}' has kept no section: it is of an older version; run it again")
+            raise ResultError(f"the run '{self.scene}' has no saved section: it is of an older version; run it again")
         kinds = list(dict.fromkeys(s.kind for s in self.snapshots))
         kind = self.main_kind if kind is None else kind
         if kind not in kinds:
@@ -61,6 +61,6 @@ class KeptSections:
         if not mine:
             kept = ", ".join(f"{s:g}" for s in dict.fromkeys(s.stroke for s in self.snapshots if s.kind == kind))
             raise ResultError(
-                f"no section is kept of stroke {stroke:g}: those of {kept} are; save.strokes in the scene keeps more"
+                f"the section of stroke {stroke:g} is not saved; saved: {kept}; save.strokes in the scene adds more"
             )
         return mine[-1]

@@ -1,4 +1,4 @@
-"""What is read off a run, by the names of its errors: two runs are compared by it."""
+"""Quantities of interest of a run, by the names of their errors; runs are compared by them."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ Rows = list[dict[str, Any]]
 
 DEPTH, AREA, LOST = "maximum depth [-]", "worn area [-]", "area lost in all [-]"
 PEAK, FRICTION = "peak pressure [-]", "friction force [-]"
-LEAKS = "leak pressure [-]"  # of scenes that ask for it
+LEAKS = "leak pressure [-]"  # only if the scene asks for it
 WHOLE = {
     DEPTH: "maximum depth [mm]",
     AREA: "area removed from the outline [mm^2]",
-    LOST: "area lost in all [mm^2]",  # where elements are lost
+    LOST: "area lost in all [mm^2]",  # only if elements are deactivated
 }
 STROKE = {"peak pressure": PEAK, "contact width": "contact width [-]", "friction force": FRICTION}
 BY_TIME_STEP = "by the time step [-]"  # after a quantity: what of its error that is
+# The last half was settled on the filled seal (``verify error_estimates``); so many that chance averages out.
 PLACES = 17  # of the last half of the run, at which histories are read
 
 
 def reading(rows: Rows) -> dict[str, dict[str, list[float]]]:
-    """What is read off along the last half of a run, by the name of its error: whole, and in each kind of stroke.
+    """Histories over the last half of a run, by name of the error and name of the quantity.
 
-    Strokes between those that were solved are interpolated; those looked at without wear are left out. Of a stroke in
-    parts their mean is read. The friction force of a step is that of its mean way: where a law changes it, the history
-    errs by more than its end.
+    Each history has ``PLACES`` values, interpolated between solved strokes; solves without wear are not used. For a
+    stroke in parts it is the mean over the parts. The friction force of a step belongs to the middle of the step.
     """
     solved = [row for row in rows if row["strokes in one solve [-]"] > 0 or row["stroke [-]"] == 0]
     parts = {part: [row for row in solved if row["kind [-]"] == part] for part in dict.fromkeys(map(_part, solved))}
@@ -50,14 +50,14 @@ def reading(rows: Rows) -> dict[str, dict[str, list[float]]]:
 
 
 def element_edge(rows: Rows) -> float:
-    """Mean edge of the elements in contact along the last half of a run [mm]; 0 if nothing touches there."""
+    """Mean element edge in contact over the last half of a run [mm]; 0 without contact."""
     late = [row for row in rows if row["stroke [-]"] >= 0.5 * rows[-1]["stroke [-]"]]
     edges = [row[column] for row in late for column in row if column.endswith(EDGE) and row[column] > 0]
     return float(np.mean(edges)) if edges else 0.0
 
 
 def _of_stroke(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
-    """Name of the error, and column, of all that is read in a single stroke."""
+    """Name of the error, and column, of each quantity of a single stroke."""
     for words, error in STROKE.items():
         yield from ((error, c) for c in row if f" {words} " in c and not c.endswith("[-]"))
     if LEAK in row:

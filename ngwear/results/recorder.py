@@ -1,4 +1,4 @@
-"""What a run leaves on disk: series.csv, result.h5, summary.json."""
+"""Records of a run, and its files series.csv, result.h5 and summary.json."""
 
 from __future__ import annotations
 
@@ -30,22 +30,22 @@ Array = NDArray[np.float64]
 
 
 def fingerprint(scene: Scene) -> str:
-    """Hash of a scene, to tell whether a folder belongs to it."""
+    """Hash of a scene, to check whether a folder belongs to it."""
     contour = scene.part.outline
     rest = [repr(getattr(scene, f.name)) for f in fields(scene) if f.name != "contour"]
     content = [contour.points.tobytes(), contour.corners.tobytes(), repr((contour.names, rest)).encode()]
     return hashlib.sha256(b"".join(content)).hexdigest()
 
 
-POINTS_ALONG = 200  # on a straight worn edge as long as the section: where depth is measured
+POINTS_ALONG = 200  # number of points for the depth on a straight edge as long as the section
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
 LEAK, EDGE = "leak pressure [MPa]", "element edge in contact [mm]"
-TORN = "area lost in all by tearing [-]"  # what of its error is known separately
-BOOK = LOST | {Fate.WORN: "merging"}  # areas: walls whose ends wear has made one lose, or gain, a little
+TORN = "area lost in all by tearing [-]"  # part of the error of the total lost area
+BOOK = LOST | {Fate.WORN: "merging"}  # lost areas; merging of surface nodes changes the area a little
 
 
 def depths(before: Outline, after: Outline) -> Array:
-    """Distance of each point of the unworn outline from the worn one [mm], shape (n,)."""
+    """Worn depth: distance of each point of the unworn outline from the worn one [mm], shape (n,)."""
     from shapely import STRtree, linestrings, points
 
     segments = STRtree(linestrings(np.stack([after.points, np.roll(after.points, -1, axis=0)], axis=1)))
@@ -54,16 +54,16 @@ def depths(before: Outline, after: Outline) -> Array:
 
 
 def measured_at(scene: Scene) -> Outline:
-    """The scene's outline with points all along its straight worn edges: a depth is known where there is one."""
+    """The scene's outline with additional points on straight worn edges; depths are measured at its points."""
     longest = float(np.ptp(scene.part.outline.points, axis=0).max()) / POINTS_ALONG
     return divided(scene.part.outline, scene.worn_edges, longest)
 
 
 @dataclass
 class Recorder:
-    """Rows and snapshots of a run so far; plain data that a checkpoint carries along.
+    """Rows and snapshots of a run so far, as plain data that a checkpoint stores.
 
-    ``unworn`` is what depths are measured from: the scene's outline, or that of its elements.
+    ``unworn`` is the outline from which depths are measured: that of the scene, or of its elements.
     """
 
     scene: Scene
@@ -75,12 +75,12 @@ class Recorder:
     unworn_area: float = 0.0
 
     def to_data(self) -> dict[str, Any]:
-        """What ``from_data`` makes the same records of: all but the scene."""
+        """The records as plain data for ``from_data``, without the scene."""
         return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "scene"}
 
     @classmethod
     def from_data(cls, data: dict[str, Any], scene: Scene) -> Recorder:
-        """The records again, of a run of the same scene."""
+        """Restore the records of a run of the same scene."""
         return cls(scene, **data)
 
     def add(self, state: Any, *, wall: float) -> None:
@@ -102,7 +102,7 @@ class Recorder:
         row: dict[str, Any] = {
             "stroke [-]": scene.program.counted(report.last_stroke),
             "kind [-]": cycle[report.phase].name,
-            "strokes in one solve [-]": report.repeats,  # 0: the outline as it is, without wear
+            "strokes in one solve [-]": report.repeats,  # 0: solved without wear
             "sliding distance [mm]": scene.program.slid(report.last_stroke),
             "worn area by the law [mm^2]": ledger.worn,
             "area removed from the outline [mm^2]": ledger.removed,
@@ -146,7 +146,7 @@ class Recorder:
         return row
 
     def _book(self, report: Any) -> dict[str, Any]:
-        """Area that the section has lost by each cause, in all and since the row before, and its elements."""
+        """Lost area and elements by cause, in total and in the last solve."""
         ledger, before = report.ledger, self.rows[-1] if self.rows else {}
         areas = {"wear": ledger.removed} | {name: ledger.lost[fate] for fate, name in BOOK.items()}
         out: dict[str, Any] = {f"area lost by {name} [mm^2]": area for name, area in areas.items()}
@@ -163,7 +163,7 @@ class Recorder:
                 "reference [mm]": p.reference,
                 "place [mm]": p.place,
                 "pressure [MPa]": p.pressure,
-                "nominal pressure [MPa]": p.load / p.weight,  # what wears
+                "nominal pressure [MPa]": p.load / p.weight,  # pressure in the wear law
                 "gap [mm]": p.gap,
             }
             for name, p in report.contacts.items()
@@ -180,7 +180,7 @@ class Recorder:
         return Snapshot(stroke, kind, report.contour.points, profiles, report.section, elements, time)
 
     def add_sections(self, reports: Sequence[Any]) -> None:
-        """Add the loaded sections of some strokes to the last snapshots of their kinds, if there are none yet."""
+        """Add loaded sections to the last snapshot of their kind of stroke, if it has none."""
         for report in reports:
             kind = self.scene.program.cycle[report.phase].name
             last = max((k for k, s in enumerate(self.snapshots) if s.kind == kind), default=None)
@@ -189,12 +189,12 @@ class Recorder:
 
     @property
     def sections(self) -> KeptSections:
-        """The loaded sections so far."""
+        """The saved loaded sections."""
         surfaces = {contact.name: contact.surface for contact in self.scene.contacts}
         return KeptSections(self.scene.name, [s for s in self.snapshots if s.section], surfaces)
 
     def summary(self, state: Any, status: str, message: str) -> dict[str, Any]:
-        """The run in a few numbers."""
+        """Contents of ``summary.json``: status, main results, cost and error estimates."""
         scene = self.scene
         cycle = [s.name for s in scene.program.cycle]
         unworn = self.unworn or measured_at(scene)
@@ -258,7 +258,7 @@ class Recorder:
         return out
 
     def _warnings(self) -> list[str]:
-        """What a reader of the results should know of them."""
+        """Warnings for the reader of the results: unstable sliding, leaks."""
         found = []
         for spec in self.scene.contacts:
             column = f"{spec.name} margin of steady sliding [-]"
@@ -266,7 +266,7 @@ class Recorder:
             if least < 0.0:
                 found.append(
                     f"contact '{spec.name}': friction and pressure are so high that steady sliding is unstable "
-                    f"({column} {least:.2g}): waves would run along the surface; what is given is the steady state"
+                    f"({column} {least:.2g}): waves would run along the surface; the results are for steady sliding"
                 )
         for stroke in self.scene.program.cycle:
             rows = [row for row in self.rows if row["kind [-]"] == stroke.name and LEAK in row]
@@ -275,13 +275,13 @@ class Recorder:
                 found.append(
                     f"stroke '{stroke.name}': the seal would leak at '{least['leaks first at [-]']}', whose contact "
                     f"holds {least[LEAK]:.3g} MPa of the fluid's {stroke.pressure:.3g} MPa at stroke "
-                    f"{least['stroke [-]']}; what is given is the seal as if it held"
+                    f"{least['stroke [-]']}; the results are for a seal without a leak"
                 )
         return found
 
 
 class Folder(OutFolder):
-    """The folder of a wear run."""
+    """The folder of a run of a wear scene."""
 
     def __init__(self, path: Path, scene: Scene, *, resume: bool) -> None:
         self.scene_hash = fingerprint(scene)

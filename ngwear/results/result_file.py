@@ -1,4 +1,4 @@
-"""What a wear run has left in ``result.h5``, read again."""
+"""Read ``result.h5`` of a wear run."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from ngwear.results.surface_text import surfaces_of
 from ngwear.surfaces import RigidSurface
 
 Array = NDArray[np.float64]
-WEAR_RATE = "specific wear rate [mm^2 per N]"  # attribute of a contact
-CONTACT, PART = "contact", "part"  # what a group of a stroke holds: a contact, or the mesh or the elements
+WEAR_RATE = "specific wear rate [mm^2 per N]"  # attribute of a contact in the file
+CONTACT, PART = "contact", "part"  # kind of a group of a stroke: a contact, or data of the part
 
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Outline and contact profiles at one solved stroke, as a run keeps them and as read from ``result.h5``.
+    """Outline and contact profiles at one solved stroke.
 
-    ``time`` [s] is infinite where a stroke has no speed; ``section`` (see ``ngwear.results.section``) and ``elements``
-    are empty but at the strokes that keep them. ``stroke`` is a fraction after some of a stroke's parts.
+    ``stroke`` is the number of completed strokes, a fraction after a part of a stroke; ``time`` [s] is infinite without
+    speeds. ``section`` (see ``ngwear.results.section``) and ``elements`` are empty unless saved at this stroke.
     """
 
     stroke: float
@@ -47,11 +47,11 @@ class ResultFile:
     ----------
     scene : str
     outline : array, shape (n, 2)
-        As given, before it was smoothed [mm].
+        Outline as given in the scene [mm].
     edges : tuple of str, length n
-        Name of each of its segments.
+        Edge name of each segment of the outline.
     wear_rates : dict
-        Specific wear rate k of each contact that wears, its mean over the run [mm²/N].
+        Specific wear rate k of each contact that wears, mean over the run [mm²/N].
     worn_edges : tuple of str
     remembers : bool
         Whether the rubber has memory.
@@ -60,12 +60,12 @@ class ResultFile:
     damage : tuple or None
         Name of the criterion that tears elements and its critical value; None without one.
     errors : dict of str to float
-        What the run states of its errors, as in ``summary.json``.
+        Error estimates, as in ``summary.json``.
     series : dict of array
-        Columns as in ``series.csv``; row i belongs to snapshot i.
+        Columns of ``series.csv``; row i belongs to snapshot i.
     snapshots : list of Snapshot
     surfaces : dict of str to RigidSurface
-        The rigid surface of each contact in its final place, of those that a file can say.
+        Rigid surface of each contact in its final position, of the kinds that a file can hold.
     """
 
     scene: str
@@ -83,11 +83,11 @@ class ResultFile:
 
     @property
     def kinds(self) -> list[str]:
-        """The strokes of the cycle by name, in their order."""
+        """Names of the strokes of the cycle, in their order."""
         return list(dict.fromkeys(s.kind for s in self.snapshots))
 
     def at(self, stroke: float, kind: str) -> Snapshot:
-        """The latest snapshot of a kind whose stroke is nearest."""
+        """The snapshot of a kind of stroke that is nearest to a stroke; the last of several."""
         mine = [s for s in self.snapshots if s.kind == kind]
         return min(reversed(mine), key=lambda s: abs(s.stroke - stroke))
 
@@ -104,7 +104,7 @@ def read_result(folder: Path | str) -> ResultFile:
 
     file = Path(folder) / FIELDS
     if not file.is_file():
-        raise ResultError(f"{file} does not exist: give the folder of a run that has ended (see ngwear run --out)")
+        raise ResultError(f"{file} does not exist: give the folder of a finished run (see ngwear run --out)")
     try:
         with h5py.File(file, "r") as h5:
             require_layout(h5, file)
@@ -134,7 +134,7 @@ def read_result(folder: Path | str) -> ResultFile:
 
 
 def _snapshot(group: Any) -> Snapshot:
-    """One stroke of the file."""
+    """Read one stroke of the file."""
     found: dict[str, dict[str, dict[str, NDArray[Any]]]] = {CONTACT: {}, PART: {}}
     for item in group.values():
         if "holds" in item.attrs:

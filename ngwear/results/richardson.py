@@ -1,27 +1,26 @@
-"""The error of the finest of two or three runs, each so many times coarser than the one before in every setting.
+"""Richardson extrapolation: error of the finest of two or three runs with a fixed ratio of their settings.
 
-A reading is an array: what was read off at the same places of each run; its length is its root mean square. With q1,
-q2, q4 on settings r = 2 times apart, an error c h^p makes ``q2 - q4 = r^p (q1 - q2)``: both differences point the same
-way, the ratio of their lengths tells p, and what is left is (Richardson)
+A quantity is an array of values at the same strokes of each run; its norm is the root mean square. With q1, q2, q4 at
+settings with the ratio r = 2, an error c h^p gives ``q2 - q4 = r^p (q1 - q2)``. If both differences have the same
+direction, the ratio of their norms gives p, and the error is
 
     |q1 - q| = |q1 - q2| / (r^p - 1).
 
-p is kept between 1 and 3/2. At the free end of a contact pressures fall as a square root, and the strains of quadratic
-elements converge with 3/2 there; what seems to converge faster comes from levels too coarse for their ratio to be
-believed, or from chance, and a ratio near 1 would promise any error.
+p is limited to the range from 1 to 3/2. At the end of a contact the pressure falls as a square root, and the strains of
+quadratic elements converge with 3/2 there. A larger observed order comes from levels that are too coarse, or from
+chance.
 
-Readings whose differences point against each other, or grow, show no order. They lie about their limit by where a mesh
-happens to put its nodes, as the highest nodal pressure or the end of a contact does, by an amount that falls with the
-element edge: q_i = q + s h_i N(0, 1). The weights 1/h_i² give the best q, and what the readings differ from it gives s
-without bias. Where differences grow, what of the last is more than scatter explains counts as a trend, of first order:
+If the differences have opposite directions, or grow, there is no order. Such quantities, as the largest nodal pressure
+or the end of a contact, scatter about their limit with the positions of the nodes, in proportion to the element edge:
+q_i = q + s h_i N(0, 1). The weights 1/h_i² give the best q, and the differences from it an unbiased s. If differences
+grow, the part of the last one that scatter does not explain counts as a trend of first order:
 
     q = sum q_i / h_i² / sum 1 / h_i²,                s² = sum |q_i - q|² / h_i² / (n - 1),
     t² = (|q1 - q2|² - (1 + r²) s²) / (r - 1)² >= 0,  |q1 - q|² = t² + s².
 
-The last difference alone would be 2.2 s where there is nothing but scatter, most of it the coarser run's. Two runs tell
-neither an order nor scatter: the order is told, or taken as the first. A coarsest run that is off by more than a third
-of what is read has too few elements to tell either, and is left out: the shipped seal's, with two or three across its
-lip, shows a peak pressure 57 % off.
+With scatter alone, the last difference would be 2.2 s, most of it from the coarser run. Two runs give neither order nor
+scatter: first order is assumed unless an order is given. A coarsest run that differs by more than a third has too few
+elements and is not used: on the shipped seal, with two or three elements across the lip, its peak pressure is 57 % off.
 """
 
 from __future__ import annotations
@@ -32,13 +31,13 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-LOWEST, HIGHEST = 1.0, 1.5  # order of convergence
-FAR = 1 / 3  # of the reading: a coarsest run further off tells nothing of the finest
+LOWEST, HIGHEST = 1.0, 1.5  # order of convergence: see above; the lower settled on ``verify error_estimates``
+FAR = 1 / 3  # of the reading: a coarsest run further off tells nothing of the finest; settled on the rod seal's peak
 Reading = Mapping[str, Mapping[str, ArrayLike]]
 
 
 def order_seen(fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike, *, ratio: float = 2.0) -> float | None:
-    """Order in which readings converge, within its bounds; None if their differences turn round, or grow."""
+    """Observed order of convergence, within its limits; None if the differences change direction, or grow."""
     last, before = np.subtract(fine, coarse), np.subtract(coarse, coarsest)
     if np.vdot(last, before) <= 0 or _square(before) < _square(last):
         return None
@@ -48,18 +47,18 @@ def order_seen(fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike, *, ratio
 def error_of_finest(
     fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike | None = None, *, ratio: float = 2.0, order: float = 1.0
 ) -> float:
-    """Error of the reading ``fine``, in the mean square of its places.
+    """Error of ``fine``, as root mean square over its values.
 
     Parameters
     ----------
     fine, coarse : array_like, shape (n,)
-        Of the run, and of one ``ratio`` times as coarse.
+        Values of the run, and of a run ``ratio`` times as coarse.
     coarsest : array_like, shape (n,), or None
-        Of one ``ratio²`` times as coarse; None if there is none. Left out if it is too far off (``FAR``).
+        Values of a run ``ratio²`` times as coarse; not used if they differ too much (``FAR``).
     ratio : float
-        > 1.
+        Ratio of the settings of two runs, > 1.
     order : float
-        Of convergence; three runs tell it themselves.
+        Order of convergence if there are two runs only.
 
     Examples
     --------
@@ -91,10 +90,11 @@ def relative_errors(
     ratio: float = 2.0,
     orders: Mapping[str, float] | None = None,
 ) -> dict[str, float]:
-    """Error of each quantity from readings by its name and that of what was read: of the worst of these.
+    """Relative error of each kind of quantity: the largest over its quantities.
 
-    ``orders`` are those of two runs, by the names of errors, where they are not the first. Errors of forces and
-    pressures are taken relative to the largest of their kind: a component that vanishes has none.
+    ``fine``, ``coarse`` and ``coarsest`` map the name of the error, and the name of the quantity, to values. ``orders``
+    are used for two runs instead of first order, by name of the error. Errors are relative to the largest quantity of
+    their kind, so that a vanishing force component does no harm.
     """
     out = {}
     for error, values in fine.items():

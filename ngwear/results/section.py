@@ -1,4 +1,4 @@
-"""The loaded section of one kept stroke: deformed elements, fields by name, surfaces and pressures along contacts."""
+"""The loaded section of one saved stroke: deformed elements, fields by name, contact pressures."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ class SectionContact:
     Attributes
     ----------
     place : array, shape (k, 2)
-        Deformed nodes of the edges that may touch, in the order of the outline [mm].
+        Deformed nodes of the edges that may touch, in outline order [mm].
     pressure : array, shape (k,)
-        Cauchy pressure there [MPa].
+        Cauchy pressure at these nodes [MPa].
     edges : array of int, shape (m, 2)
-        Nodes that a mesh edge joins.
+        Start and end node of each mesh edge.
     moved : array, shape (2,)
-        How far the surface stands from its place in the scene: one under force travels [mm].
+        Displacement of a surface under force from its place in the scene [mm].
     turned : float
-        How far it has moved along itself, which its worn profile goes with [mm].
+        Movement of the surface along itself; its worn profile moves with it [mm].
     """
 
     place: Array
@@ -45,25 +45,25 @@ class SectionContact:
 
 @dataclass(frozen=True)
 class Section:
-    """The section of a part under load. Stresses are Cauchy's, averaged between elements (see ``recovered``).
+    """The section of a part under load. Stresses are Cauchy stresses, averaged between elements.
 
     Attributes
     ----------
     points : array, shape (n, 2)
         Deformed nodes of the elements: vertices, edge midpoints, centres of quadrilaterals [mm].
     displacement : array, shape (n, 2)
-        [mm].
+        Displacement of the nodes [mm].
     triangles, quadrilaterals : array of int, shapes (nt, 6) and (nq, 9)
         Corners of each, the midpoint of the edge that begins at each corner, and a quadrilateral's centre.
     stress : array, shape (nv, 4)
-        xx, yy, xy and zz at the vertices, which come first among the nodes [MPa]; zz is the hoop stress of a ring, or
-        the one across a plane section.
+        Stresses xx, yy, xy and zz at the vertices, which come first among the nodes [MPa]; zz is the hoop stress of a
+        ring, or the stress normal to a plane section.
     stretch : array, shape (nv,)
-        The largest principal one at the vertices [-].
+        Maximum principal stretch at the vertices [-].
     wetted, held : array of int, shape (m, 3)
-        Start, midpoint and end of each mesh edge that the fluid presses on, and that a support holds.
+        Start, midpoint and end of each mesh edge under fluid pressure, and on a support.
     fluid_pressure : float
-        [MPa].
+        Fluid pressure [MPa].
     contacts : dict of str to SectionContact
     """
 
@@ -80,12 +80,12 @@ class Section:
 
     @classmethod
     def of(cls, arrays: Arrays) -> Section:
-        """From the arrays that a run keeps at a stroke (``Snapshot.section``).
+        """Build from the arrays that a run saves at a stroke (``Snapshot.section``).
 
         Raises
         ------
         KeyError
-            For an array that is missing.
+            If an array is missing.
         """
 
         def real(name: str) -> Array:
@@ -120,12 +120,12 @@ class Section:
         )
 
     def field(self, name: str) -> Array:
-        """A field at the vertices, shape (nv,), by its name as in ``field_names``."""
+        """Values of a field at the vertices, shape (nv,), by its name in ``FIELDS``."""
         return FIELDS[named(name)](self)
 
     @property
     def border(self) -> Index:
-        """Start, midpoint and end of each mesh edge that belongs to one element only, shape (m, 3)."""
+        """Start, midpoint and end of each boundary edge of the mesh, shape (m, 3)."""
         edges = self.edges
         _, first, count = np.unique(edges[:, 1], return_index=True, return_counts=True)
         return edges[first[count == 1]]
@@ -140,7 +140,7 @@ class Section:
         return np.concatenate(found)
 
     def loops(self) -> list[Index]:
-        """The border as closed lines: start and midpoint of one edge after the other, shape (m, 2) each."""
+        """The boundary as closed lines: start and midpoint of the edges in turn, shape (m, 2) each."""
         border = self.border
         after: dict[int, list[int]] = {}
         for row, start in enumerate(border[:, 0].tolist()):
@@ -160,7 +160,7 @@ class Section:
 
 
 def _principal(section: Section) -> tuple[Array, Array]:
-    """The largest and the least of the three principal stresses [MPa]."""
+    """Largest and smallest of the three principal stresses [MPa]."""
     xx, yy, xy, zz = section.stress.T
     middle, radius = 0.5 * (xx + yy), np.hypot(0.5 * (xx - yy), xy)
     return np.maximum(middle + radius, zz), np.minimum(middle - radius, zz)
@@ -188,12 +188,12 @@ FIELDS: dict[str, Callable[[Section], Array]] = {
 
 
 def named(field: str) -> str:
-    """The full name of a field, which may be given without its unit.
+    """Full name of a field, which may be given without its unit.
 
     Raises
     ------
     ResultError
-        For a name that is not known, with those that are.
+        If the name is unknown; the message lists the known ones.
     """
     for name in FIELDS:
         if field.strip().lower() in (name.lower(), name.rsplit(" [", 1)[0].lower()):

@@ -1,4 +1,4 @@
-"""Rigid surfaces as text in a result file, and back."""
+"""Rigid surfaces as text in a result file: write and read."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ KNOWN: dict[str, type[RigidSurface]] = {"plane": Plane, "cylinder": Cylinder}
 
 
 def surface_text(surface: RigidSurface) -> str:
-    """JSON of a surface's kind and numbers; of a kind that is not known here, its class alone."""
+    """JSON text of a surface: its kind and numbers; for a user-defined kind, its class name only."""
     kind = next((name for name, known in KNOWN.items() if type(surface) is known), None)
     if kind is None:
         return json.dumps({"type": type(surface).__name__})
@@ -21,7 +21,7 @@ def surface_text(surface: RigidSurface) -> str:
 
 
 def surface_of(text: str) -> RigidSurface | None:
-    """The surface again; None if its kind is not known."""
+    """The surface from its JSON text; None if its kind is not known."""
     numbers = json.loads(text)
     kind = KNOWN.get(numbers.pop("type"))
     if kind is None:
@@ -30,7 +30,7 @@ def surface_of(text: str) -> RigidSurface | None:
 
 
 def surfaces_of(h5: Any) -> dict[str, RigidSurface]:
-    """The surface of each contact in an open result file, in the scene's order, of those that it can say."""
+    """Surface of each contact in an open result file, in the order of the scene; without user-defined kinds."""
     groups = sorted(h5.get("contacts", {}).values(), key=lambda group: group.attrs.get("number", 0))
     found = {name_of(group): surface_of(group.attrs.get("surface", '{"type": ""}')) for group in groups}
     return {name: surface for name, surface in found.items() if surface is not None}

@@ -1,1 +1,1 @@
-"""What is simulated, as plain frozen data, and its files: no mesh, no solver, nothing that runs."""
+"""The scene: the input of a simulation as frozen dataclasses, and its files. No mesh, no solver."""

@@ -1,4 +1,4 @@
-"""What else acts on a part's edges: a sealed fluid, and supports."""
+"""Boundary conditions other than contact: pressure of a sealed fluid, and supports."""
 
 from __future__ import annotations
 
@@ -10,10 +10,17 @@ from ngwear.errors import check_fields
 
 @dataclass(frozen=True, kw_only=True)
 class Fluid:
-    """Where a sealed fluid may go: ``edges`` in one piece, ``inlet`` always wetted.
+    """Pressure of a sealed fluid on edges of the part.
 
-    ``leak_pressure`` asks what fluid pressure the contacts hold; meshes are then fine where the fluid meets them, too:
-    at its front, as at a punch's edge, a contact often presses hardest.
+    Parameters
+    ----------
+    edges : sequence of str
+        Edges that the fluid may wet; they form one connected piece.
+    inlet : sequence of str
+        Edges that are always wetted; from there the fluid reaches the first point in contact.
+    leak_pressure : bool
+        Whether to compute the fluid pressure that the contacts hold. The mesh is then also refined where the fluid
+        meets a contact, because the contact pressure often has its peak there.
     """
 
     edges: Sequence[str]
@@ -26,7 +33,7 @@ class Fluid:
 
 @dataclass(frozen=True, kw_only=True)
 class Support:
-    """Edges held at their place in x, y or both."""
+    """Edges whose displacement is zero in x, y or both."""
 
     edges: Sequence[str]
     x: bool = True

@@ -1,4 +1,4 @@
-"""A rigid surface, the edges that may touch it, and the laws between them."""
+"""One contact: a rigid surface, the edges of the part that may touch it, and the laws of friction and wear."""
 
 from __future__ import annotations
 
@@ -13,32 +13,37 @@ from ngwear.surfaces import RigidSurface
 
 @dataclass(frozen=True)
 class Contact:
-    """A rigid surface and the edges that may touch it.
+    """A rigid surface and the edges of the part that may touch it.
 
     Parameters
     ----------
     name : str
     edges : sequence of str
-        Of the part's outline.
+        Names of edges of the part's outline.
     surface : RigidSurface
-        In its final place; while mounting it comes in from first touch.
+        In its final position; mounting moves it there from first touch.
     friction : FrictionLaw or float
         Coefficient of friction [-], >= 0.
     slides : bool
-        Whether the surface moves along itself in the strokes, as a rod does; a housing stands still.
+        Whether the surface moves along itself in the strokes, as a rod does; False for a housing.
     sticks : bool or None
-        Whether friction may stick, with unknowns and a history of its own, or all of the contact slides in every
-        stroke; left to ``Scene.may_stick`` unless given.
+        True: stick and slip, with unknowns and a history of the tractions. False: full sliding in every stroke.
+        Default: ``Scene.may_stick`` decides.
     specific_wear_rate : WearRate or float
-        Archard's k [mm²/N], >= 0: depth per nominal pressure and sliding distance.
+        Archard's k [mm²/N], >= 0: worn depth over nominal pressure and sliding distance.
     wear_law : WearLaw or None
-        What the wear makes of the pressure, times that k; Archard's law unless given. The surface wears by it too.
+        Factor on k that depends on the pressure; default Archard's law (factor 1). It holds for the surface too.
     counter_wear_rate : float
-        That of the surface, which keeps a worn profile of its own [mm²/N], >= 0; only where the part wears too.
+        k of the surface, which then has a worn profile [mm²/N], >= 0; only if the part wears too.
     force : float or None
-        Press the surface on with this force [N, or N/mm in plane strain] instead of by its place.
+        Force that presses the surface on [N, or N/mm in plane strain]; default: its position is given instead.
     refine : bool
-        Whether the mesh shall follow this contact; wearing contacts always are followed.
+        Whether the mesh is refined in this contact; it always is if the contact wears.
+
+    Raises
+    ------
+    SceneError
+        If a value is out of range, or two values contradict each other.
     """
 
     name: str
@@ -76,16 +81,16 @@ class Contact:
 
     @property
     def friction_law(self) -> FrictionLaw | None:
-        """The law of friction; None without any."""
+        """The friction law; None without friction."""
         return law_of(self.friction)
 
     @property
     def wear_rate(self) -> WearRate:
-        """The specific wear rate as a table, of one row for a number."""
+        """The specific wear rate as a table; a number becomes a table with one row."""
         rate = self.specific_wear_rate
         return rate if isinstance(rate, WearRate) else WearRate(distance=(0.0,), rate=(rate,))
 
     @property
     def wears(self) -> bool:
-        """Whether there is any wear."""
+        """Whether the part wears in this contact."""
         return self.wear_rate.highest > 0

@@ -1,4 +1,4 @@
-"""Wear by deactivating elements: what a scene asks for, and the filter of distorted elements."""
+"""Settings for wear by deactivated elements, and the filter of distorted elements."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ Mask = NDArray[np.bool_]
 
 @dataclass(frozen=True, kw_only=True)
 class DistortionFilter:
-    """Elements too distorted to carry load, found before each load.
+    """Deactivates elements that are too distorted to carry load, before each load step.
 
     Parameters
     ----------
     corner_cosine : float
-        Largest cosine of a corner's angle that an element may have [-]; inside out counts as 1.
+        Largest allowed cosine of a corner angle [-]; an inverted element counts as 1.
     """
 
-    corner_cosine: float = 0.99
+    corner_cosine: float = 0.99  # a corner of 8 degrees
 
     def __post_init__(self) -> None:
         check_fields(self, "deactivation.distortion")
@@ -33,27 +33,28 @@ class DistortionFilter:
         require(0 < self.corner_cosine < 1, f"{place}.corner_cosine", self.corner_cosine, "must lie between 0 and 1")
 
     def finds(self, cells: Cells) -> Mask:
-        """Living elements that are too distorted, shape (m,)."""
+        """Mask of the active elements that are too distorted, shape (m,)."""
         return cells.living & (cells.corner_cosines() > self.corner_cosine)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Deactivation:
-    """A section that loses elements: layers of quadrilaterals below the edges that wear.
+    """Deactivate elements of the section: layers of quadrilaterals below the edges that wear.
 
-    Surface nodes move with the wear, along their columns; those inside stay until one from the surface reaches them:
-    both then become one. What is left out does not happen.
+    Surface nodes move with the wear along their columns. Nodes inside do not move; a surface node that reaches one is
+    merged with it. A mechanism that is None is not simulated.
 
     Parameters
     ----------
     depth : float
-        Thickness of the layers [mm]; their elements have sides of ``Accuracy.patch``.
+        Thickness of the layers [mm]; the side of their elements is ``Accuracy.patch``.
     distortion : DistortionFilter or None
+        Deactivates distorted elements.
     damage : Criterion or None
-        Only the layers are torn.
+        Deactivates torn elements, in the layers only.
     reach : float or None
-        How far from a contact that wears and carries load elements are torn [mm], what friction tears out; everywhere
-        in the layers if it is not given, cracks included.
+        Elements are torn only within this distance from a contact that wears and carries load [mm]. Default:
+        everywhere in the layers, so that cracks can grow.
     """
 
     depth: float
@@ -65,4 +66,4 @@ class Deactivation:
         check_fields(self, "deactivation")
         require(self.depth > 0, "deactivation.depth", self.depth, "must be greater than 0 mm")
         positive = self.reach is None or self.reach > 0
-        require(positive, "deactivation.reach", self.reach, "must be greater than 0 mm, or left out")
+        require(positive, "deactivation.reach", self.reach, "must be greater than 0 mm, or be removed")

@@ -1,4 +1,4 @@
-"""How wear is integrated, and what a run keeps."""
+"""Options of a scene: how wear is integrated, and which results are saved."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ from ngwear.errors import check_fields, require
 
 @dataclass(frozen=True, kw_only=True)
 class Wear:
-    """How the worn depth is integrated, and what becomes of the mesh.
+    """How the worn depth is integrated, and when the section is remeshed.
 
-    The nodes follow the worn outline, those inside smoothly; a mesh can do so until its elements are squeezed or folded
-    (``Body.move_to``). With ``remesh`` other than ``"due"`` it is fine at once wherever the wear may take the contact.
+    Boundary nodes move with the worn outline, inner nodes follow smoothly, until elements are too distorted
+    (``Body.move_to``). With ``remesh`` other than ``"due"`` the first mesh is fine wherever the contact may spread.
 
     Parameters
     ----------
     scheme : str
-        ``"implicit"`` (backward Euler inside the contact law, stable for every step) or ``"explicit"``.
+        ``"implicit"`` (wear inside the contact law, stable for every step length) or ``"explicit"``.
     step : str
-        ``"jump"``: as many cycles at once as ``Accuracy.wear_error`` allows; ``"fixed"``: ``max_jump``, fewer where so
-        many fail; ``"each"``: every stroke.
+        ``"jump"``: one solve stands for as many cycles as ``Accuracy.wear_error`` allows; ``"fixed"``: for
+        ``max_jump`` cycles, fewer if such a step fails; ``"each"``: every stroke is solved.
     max_jump : int or None
-        Most cycles at once; what a cycle wears bounds them unless it is given.
+        Largest number of cycles in one step; default: limited by the error only.
     remesh : str
-        ``"due"``: a new mesh as soon as another would be better for the present contact; ``"limit"``: once the nodes
-        cannot be moved any further; ``"never"``: the run gives up there.
+        ``"due"``: remesh as soon as the mesh is too coarse for the present contact; ``"limit"``: when the nodes
+        cannot move any further; ``"never"``: the run gives up then.
     """
 
     scheme: str = "implicit"
@@ -40,7 +40,7 @@ class Wear:
         require(self.step in ("jump", "fixed", "each"), "wear.step", self.step, "must be 'jump', 'fixed' or 'each'")
         most = self.max_jump
         require(most is None or most >= 1, "wear.max_jump", most, "must be at least 1")
-        says = "is missing: step = 'fixed' takes so many cycles at once"
+        says = "is missing: step = 'fixed' needs the number of cycles of a step"
         require(most is not None or self.step != "fixed", "wear.max_jump", most, says)
         require(
             self.remesh in ("due", "limit", "never"), "wear.remesh", self.remesh, "must be 'due', 'limit' or 'never'"
@@ -49,14 +49,14 @@ class Wear:
 
 @dataclass(frozen=True, kw_only=True)
 class Save:
-    """What a run keeps besides one line a step.
+    """What a run saves besides one row of ``series.csv`` for each solve.
 
     Parameters
     ----------
     strokes : sequence of int
-        Strokes that a jump must not pass over, so that outline and pressure are kept just there.
+        Numbers of strokes that are solved and saved with outline, pressure and loaded section; no jump passes them.
     vtk : bool
-        Whether the deformed mesh is written for ParaView at these strokes and at the end.
+        Whether to write the deformed mesh for ParaView at the end.
     """
 
     strokes: Sequence[int] = ()

@@ -1,4 +1,4 @@
-"""A rubber part: its section and what it is made of."""
+"""A rubber part: outline of its section, and material."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ class Part:
     Parameters
     ----------
     outline : Outline
-        Of its section [mm]; (axial, radial) in an axisymmetric scene.
+        Outline of the section [mm]; (axial, radial) in an axisymmetric scene.
     material : Hyperelastic
-        Long-term behaviour.
+        Long-term hyperelastic behaviour.
     prony : PronySeries or None
-        Arms of its memory at the scene's temperature, relative to that; None for rubber without memory.
+        Viscoelastic arms at the scene's temperature, moduli relative to the long-term one; None: elastic rubber.
     """
 
     outline: Outline

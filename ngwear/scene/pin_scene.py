@@ -1,4 +1,4 @@
-"""A pin on a plate at several speeds, as plain frozen data."""
+"""Scene of a pin that slides on a rubber sheet at several speeds, as frozen dataclasses."""
 
 from __future__ import annotations
 
@@ -20,21 +20,21 @@ class Pin:
     Parameters
     ----------
     material : Hyperelastic
-        Long-term behaviour.
+        Long-term hyperelastic behaviour.
     series : PronySeries or None
-        Arms at the sheet's temperature; None leaves the rubber elastic.
+        Viscoelastic arms at the sheet's temperature; None: elastic rubber.
     radius : float
-        Of the ball [mm].
+        Radius of the ball [mm].
     load : float
-        [N].
+        Normal force [N].
     thickness : float
-        Of the sheet [mm].
+        Thickness of the sheet [mm].
     track_radius : float
-        [mm]; infinite for a straight track.
+        Radius of the circular track [mm]; infinite for a straight track.
     sheet_radius : float
-        Outer radius of the sheet [mm]; with a circular track its centre is the track's.
+        Outer radius of the sheet [mm]; sheet and circular track have the same centre.
     friction : FrictionLaw or float
-        Coefficient of surface friction [-]; a law by lubrication is refused, as steady sliding has no distance.
+        Coefficient of surface friction [-]. Laws over the sliding distance are refused: steady sliding has none.
 
     Raises
     ------
@@ -44,6 +44,7 @@ class Pin:
 
     material: Hyperelastic
     series: PronySeries | None
+    # Sizes, load and friction of case C2 (10.5772/50498).
     radius: float = 5.0
     load: float = 100.0
     thickness: float = 4.0
@@ -58,7 +59,11 @@ class Pin:
         if not isinstance(self.friction, FrictionLaw) and not self.friction >= 0:
             raise SceneError("pin.friction", self.friction, "must be at least 0")
         if self.friction_law is not None and self.friction_law.breaks:
-            raise SceneError("pin.friction", self.friction, "steady sliding has no distance: give the state's own mu")
+            raise SceneError(
+                "pin.friction",
+                self.friction,
+                "depends on the sliding distance, which steady sliding does not have: give a number",
+            )
         needed = self.track_radius + 2 * self.contact_radius
         if math.isfinite(self.track_radius) and needed > self.sheet_radius:
             raise SceneError(
@@ -70,19 +75,19 @@ class Pin:
 
     @property
     def friction_law(self) -> FrictionLaw | None:
-        """The law of the surface friction; None without any."""
+        """The law of surface friction; None without friction."""
         return law_of(self.friction)
 
     @property
     def arms(self) -> PronySeries:
-        """The series; SceneError for elastic rubber."""
+        """The Prony series; SceneError for elastic rubber."""
         if self.series is None:
-            raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
+            raise SceneError("pin.series", None, "is missing: without memory steady sliding does not depend on speed")
         return self.series
 
     @property
     def contact_radius(self) -> float:
-        """A guess between Hertz's contact on a half-space and that on a thin bonded layer [mm]."""
+        """Estimated contact radius, between Hertz on a half-space and a thin bonded layer [mm]."""
         modulus = 4 * self.material.shear_modulus
         hertz = (0.75 * self.load * self.radius / modulus) ** (1 / 3)
         return hertz / (1 + (hertz / self.thickness) ** 2) ** 0.25
@@ -90,10 +95,18 @@ class Pin:
 
 @dataclass(frozen=True, kw_only=True)
 class PinMesh:
-    """How fine: edges in the contact, far away [mm], and the grid's columns in the contact [mm].
+    """Mesh of a pin scene.
 
-    ``folding_error`` is the largest relative error of stress by arms that are folded away, ``reach`` and ``beside`` are
-    how far the block reaches along the track and across it, over the sheet's thickness.
+    Parameters
+    ----------
+    patch, coarse : float
+        Element edge in the contact, and far from it [mm].
+    column : float
+        Width of the columns of the grid on which the memory is integrated, in the contact [mm].
+    reach, beside : float
+        Half length of the meshed block along the track, and half width across it, over the sheet's thickness [-].
+    folding_error : float
+        Largest relative error of stress by relaxation times that are left out [-].
 
     Raises
     ------
@@ -101,6 +114,7 @@ class PinMesh:
         For a size that is not positive.
     """
 
+    # Settled on the shipped pin: two meshes differ by 1.0 % of the friction (``verify pin_on_plate``; ``ngwear cost``).
     patch: float = 0.5
     coarse: float = 3.0
     column: float = 0.2
@@ -119,31 +133,31 @@ class PinMesh:
             raise SceneError("accuracy.folding_error", self.folding_error, "must be at least 0, below 1")
 
     def folding(self, series: PronySeries, speed: float) -> Folding:
-        """Fold the arms that relax while the rubber passes one column.
+        """Leave out the arms that relax while the rubber passes one column at this speed [mm/s].
 
-        None becomes a spring: the pin has been running for ever, and the slowest arm has seen the mean of every turn.
+        No arm becomes a spring: in the steady state even the slowest arm has the mean of all turns.
         """
         return series.folded(shortest=self.column / speed, longest=math.inf, tolerance=self.folding_error)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PinScene:
-    """What ``ngwear run`` needs to slide a pin on a plate.
+    """A pin that slides on a rubber sheet in steady state, at several speeds.
 
     Parameters
     ----------
     name : str
     pin : Pin
     speeds : tuple of float
-        [mm/s], each > 0.
+        Sliding speeds [mm/s], each > 0.
     mesh : PinMesh
     vtk : bool
-        Whether the deformed sheet is written for ParaView, one file a speed.
+        Whether to write the deformed sheet for ParaView, one file for each speed.
 
     Raises
     ------
     SceneError
-        For a speed that is not positive or given twice, or rubber without memory.
+        If a speed is not positive or given twice, or the rubber has no memory.
     """
 
     name: str
@@ -161,7 +175,11 @@ class PinScene:
             if speed in self.speeds[:i]:
                 raise SceneError(f"program.speeds[{i}]", speed, "is given twice")
         if self.pin.series is None:
-            raise SceneError("material.prony", None, "is missing: without memory friction does not depend on speed")
+            raise SceneError(
+                "material.prony",
+                None,
+                "is missing: without memory the friction of steady sliding does not depend on speed",
+            )
 
     def write(self, path: Path | str) -> None:
         """Write the scene to a ``.toml`` file.
@@ -169,7 +187,7 @@ class PinScene:
         Raises
         ------
         SceneError
-            For what a scene file cannot say, such as a law or material of one's own.
+            If a scene file cannot represent something, such as a user-defined law or material.
         """
         from ngwear.scene.write_scene import write_pin_scene
 

@@ -1,4 +1,4 @@
-"""What moves: the strokes of a cycle, and how many of them."""
+"""The program of a scene: the strokes of a cycle, and the number of strokes."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ from dataclasses import KW_ONLY, dataclass, replace
 
 from ngwear.errors import check_fields, require
 
-PART = re.compile(r", part \d+ of \d+$")  # of a stroke's name
+PART = re.compile(r", part \d+ of \d+$")  # ending of the name of a part of a stroke
 
 
 def whole_name(kind: str) -> str:
-    """Name of the stroke that a part belongs to, or of a stroke that is in one piece."""
+    """Name of the whole stroke, for a part of a stroke or for a whole one."""
     return PART.sub("", kind)
 
 
 @dataclass(frozen=True)
 class Stroke:
-    """One phase of the cycle.
+    """One stroke of the cycle.
 
     Parameters
     ----------
@@ -27,11 +27,11 @@ class Stroke:
     travel : float
         Sliding distance [mm], > 0.
     direction : float
-        Along the surfaces' tangent (their normal turned clockwise): 1 forward, -1 backward.
+        1 forward, -1 backward, along the tangent of the surface (its normal turned clockwise).
     pressure : float
         Sealed pressure [MPa], >= 0.
     speed : float or None
-        Of the sliding [mm/s], > 0; only rubber with memory asks for it.
+        Sliding speed [mm/s], > 0; needed for rubber with memory and for friction that depends on speed.
     """
 
     name: str
@@ -51,25 +51,24 @@ class Stroke:
 
     @property
     def duration(self) -> float:
-        """Time that the stroke takes [s]; infinity without a speed."""
+        """Duration of the stroke [s]; infinite without a speed."""
         return math.inf if self.speed is None else self.travel / self.speed
 
 
 @dataclass(frozen=True, kw_only=True)
 class Program:
-    """Mounting, then the strokes of ``cycle`` in turn until ``strokes`` are done.
+    """Mounting, then the strokes of ``cycle`` in turn until ``strokes`` are completed.
 
     Parameters
     ----------
     cycle : sequence of Stroke
-        As they are solved: each may be a part of one that was given, see ``divided``.
+        Strokes as they are solved: each may be a part of a given stroke, see ``divided``.
     strokes : int
-        How many of these.
+        Total number of these strokes.
     rest : float
-        How long the part sits mounted before the first stroke [s], > 0; for ever, until rubber with memory has relaxed,
-        unless given.
+        Time from mounting to the first stroke [s], > 0; default infinite: rubber with memory has relaxed.
     parts : int
-        How many of these make a stroke that was given.
+        Number of these strokes that make one given stroke.
     """
 
     cycle: Sequence[Stroke]
@@ -84,10 +83,12 @@ class Program:
         object.__setattr__(self, "cycle", tuple(self.cycle))
         require(bool(self.cycle), "program.stroke", self.cycle, "give at least one stroke")
         require(self.strokes >= 0, "program.strokes", self.strokes, "must be at least 0")
-        require(self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without it the part relaxes fully")
+        require(
+            self.rest > 0, "program.rest", self.rest, "must be greater than 0 s; without rest the part relaxes fully"
+        )
 
     def divided(self, parts: int) -> Program:
-        """The same with each stroke that was given in so many equal parts, one after the other."""
+        """The same program with each given stroke divided into this number of equal parts."""
         if parts == self.parts:
             return self
         whole = [replace(s, name=whole_name(s.name), travel=self.parts * s.travel) for s in self.cycle[:: self.parts]]
@@ -100,27 +101,27 @@ class Program:
         return replace(self, cycle=tuple(cycle), strokes=self.strokes // self.parts * parts, parts=parts)
 
     def counted(self, strokes: int) -> float:
-        """Of so many strokes as they are solved, how many of those that were given are done; whole where it is."""
+        """Number of given strokes that are completed after this number of solved strokes; an int if it is whole."""
         full, more = divmod(strokes, self.parts)
         return full + more / self.parts if more else full
 
     @property
     def shortest_way(self) -> float:
-        """Of the strokes that were given, the shortest way [mm]."""
+        """Travel of the shortest given stroke [mm]."""
         return self.parts * min(stroke.travel for stroke in self.cycle)
 
     def slid(self, strokes: int) -> float:
-        """Sliding distance after so many strokes [mm]."""
+        """Sliding distance after this number of solved strokes [mm]."""
         full, part = divmod(strokes, len(self.cycle))
         return full * sum(s.travel for s in self.cycle) + sum(s.travel for s in self.cycle[:part])
 
     @property
     def duration(self) -> float:
-        """Time that all strokes take [s]."""
+        """Duration of all strokes [s]."""
         return self.elapsed(self.strokes)
 
     def elapsed(self, strokes: int) -> float:
-        """Time after so many strokes [s]; infinity if one of them has no speed."""
+        """Time after this number of solved strokes [s]; infinite if one of them has no speed."""
         full, part = divmod(strokes, len(self.cycle))
         times = [stroke.duration for stroke in self.cycle]
         return (full * sum(times) if full else 0.0) + sum(times[:part])

@@ -13,7 +13,7 @@ PLACE = "deactivation"
 
 
 def read_deactivation(table: Any) -> Deactivation:
-    """Layers, filter and damage; what the table leaves out does not happen."""
+    """Read layers, distortion filter and damage; a mechanism that is not in the table is not simulated."""
     if not isinstance(table, dict):
         raise SceneError(PLACE, table, "must be a table [deactivation]")
     values = dict(table)

@@ -1,4 +1,4 @@
-"""The values ``friction``, ``specific_wear_rate`` and ``wear_law`` of a contact: numbers, or tables that say which."""
+"""The values ``friction``, ``specific_wear_rate`` and ``wear_law`` of a contact: numbers or tables."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ WEAR_LAWS = {
 
 
 def read_friction(place: str, value: Any, folder: Path) -> FrictionLaw | float:
-    """A number, or a law of a table with ``law`` and the law's values; files start from ``folder``.
+    """Read a number, or a table with ``law`` and the parameters of that law; file names are relative to ``folder``.
 
-    ``law = "lubrication"`` takes the rows ``distance`` and ``coefficient``, a ``file`` that holds them, or a file whose
-    four phases are to be ``fitted``; ``law = "product"`` a list ``factors`` of such tables.
+    ``law = "lubrication"`` needs the rows ``distance`` and ``coefficient``, or a ``file`` with them, or ``fitted``, a
+    file of measurements to which the four phases are fitted. ``law = "product"`` needs ``factors``, a list of tables.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def _friction_law(place: str, table: dict[str, Any], folder: Path) -> FrictionLa
 
 
 def read_wear_rate(place: str, value: Any, folder: Path) -> WearRate | float:
-    """A number, or a table with the rows ``distance`` and ``rate`` or a ``file`` that holds them.
+    """Read a number, or a table with the rows ``distance`` and ``rate`` or a ``file`` with them.
 
     Raises
     ------
@@ -70,7 +70,7 @@ def read_wear_rate(place: str, value: Any, folder: Path) -> WearRate | float:
 
 
 def read_wear_law(place: str, value: Any, folder: Path) -> WearLaw:
-    """A table with ``law`` and the law's values.
+    """Read a table with ``law`` and the parameters of that law.
 
     Raises
     ------
@@ -84,7 +84,7 @@ def read_wear_law(place: str, value: Any, folder: Path) -> WearLaw:
 
 
 def _chosen(place: str, table: dict[str, Any], laws: dict[str, Any]) -> tuple[str, dict[str, Any]]:
-    """Which of the laws a table asks for, and its values."""
+    """Name of the law in a table, and its parameters."""
     kind = get(table, place, "law")
     if not isinstance(kind, str) or kind not in laws:
         raise SceneError(f"{place}.law", kind, f"must be one of {list(laws)}")
@@ -113,7 +113,7 @@ def _of_file(place: str, values: dict[str, Any], key: str, folder: Path, read: C
 
 
 def _placed(before: str, build: Callable[[], Any]) -> Any:
-    """Say of a law's complaint in which contact and file it is."""
+    """Build a law; add contact and file to the place in its errors."""
     try:
         return build()
     except SceneError as error:

@@ -19,7 +19,7 @@ _REFERENCES = ("long-term", "instantaneous", "absolute")
 
 
 def read_material(table: dict[str, Any]) -> Hyperelastic:
-    """Long-term behaviour, of a table [material]."""
+    """Read the long-term hyperelastic material from a table [material]."""
     model = get(table, "material", "model")
     if not isinstance(model, str) or model not in MATERIALS:
         raise SceneError("material.model", model, f"must be one of {list(MATERIALS)}")
@@ -28,7 +28,7 @@ def read_material(table: dict[str, Any]) -> Hyperelastic:
 
 
 def read_arms(table: dict[str, Any]) -> PronySeries:
-    """Arms at the scene's temperature: a compound's from the library, or moduli and times; smoothed if asked for."""
+    """Read the Prony series: a compound of the library, or moduli and times; shifted to the scene's temperature."""
     place = "material.prony"
     if not isinstance(table, dict):
         raise SceneError(place, table, "must be a table [material.prony]")

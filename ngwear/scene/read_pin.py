@@ -14,7 +14,7 @@ from ngwear.scene.toml_values import get, known, record, subtable
 
 
 def pin_scene(data: dict[str, Any], name: str, folder: Path) -> PinScene:
-    """Build the scene from the tables of its file; files named in it start from ``folder``.
+    """Build the scene from the tables of its file; file names in it are relative to ``folder``.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Scenes as TOML files: a serialisation of the classes in ``ngwear.scene.scene``."""
+"""Read scenes from TOML files: their tables hold the fields of the classes in ``ngwear.scene``."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ _PAIRS = {"point", "normal", "centre", "push"}
 
 
 def read_scene(path: Path | str) -> Scene | PinScene:
-    """Read a scene of any kind; relative file names in it start from the scene's folder.
+    """Read a scene of any kind; file names in it are relative to the folder of the scene file.
 
     Raises
     ------
@@ -102,12 +102,14 @@ def _part(data: dict[str, Any], folder: Path) -> Part:
 
 
 def _accuracy(table: Any) -> Accuracy:
-    """Knobs one by one, or all of them by the name of a preset."""
+    """Read the fields of ``Accuracy``, or the name of a preset."""
     if not isinstance(table, dict) or "preset" not in table:
         return record(Accuracy, "accuracy", table)
     known("accuracy.", table, {"preset", *Accuracy.__dataclass_fields__})
     for key in table.keys() - {"preset"}:
-        raise SceneError(f"accuracy.{key}", table[key], f"the preset {table['preset']!r} chooses it: leave either out")
+        raise SceneError(
+            f"accuracy.{key}", table[key], f"is set by the preset {table['preset']!r}: give only one of them"
+        )
     return Accuracy.preset(typed("accuracy.preset", table["preset"], "str"))
 
 

@@ -1,4 +1,4 @@
-"""What is simulated, as plain frozen data: no mesh, no solver, nothing that runs."""
+"""The scene: part, contacts, program and options of a simulation, as frozen dataclasses."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ngwear.scene.program import Program
 
 @dataclass(frozen=True)
 class Scene:
-    """Everything that a run needs.
+    """The complete input of a wear simulation.
 
     Parameters
     ----------
@@ -30,9 +30,9 @@ class Scene:
     part : Part
     contacts : sequence of Contact
     program : Program
-        Kept as it is solved: each stroke in ``accuracy.parts``.
+        Stored as it is solved: each stroke divided into ``accuracy.parts``.
     axisymmetric : bool
-        Whether the section is (axial, radial) of a ring, as of seals; else plane strain, forces per mm of thickness.
+        True: the section is (axial, radial) of a ring, as of seals. False: plane strain, forces per mm of thickness.
     fluid : Fluid or None
     supports : sequence of Support
     accuracy : Accuracy
@@ -43,7 +43,7 @@ class Scene:
     Raises
     ------
     SceneError
-        With the place in the scene, the value found and the remedy.
+        If a value is wrong, or two contradict each other: with the place, the value and the remedy.
     """
 
     name: str
@@ -96,14 +96,14 @@ class Scene:
         Raises
         ------
         SceneError
-            For what a scene file cannot say, such as a law or material of one's own.
+            If a scene file cannot represent something, such as a user-defined law or material.
         """
         from ngwear.scene.write_scene import write_wear_scene
 
         write_wear_scene(self, Path(path))
 
     def _check_kinds(self) -> None:
-        """Refuse what is no part, no contact ...; lists become tuples."""
+        """Check the classes of all fields; lists become tuples."""
         check_fields(self, "scene")
         kinds: dict[str, Any] = {"part": Part, "program": Program, "accuracy": Accuracy, "wear": Wear, "save": Save}
         for name, kind in kinds.items():
@@ -119,7 +119,7 @@ class Scene:
             object.__setattr__(self, name, tuple(values))
 
     def _check_side(self, contact: Contact) -> None:
-        """A rigid body that swallows the part, or that it can never reach, is on the wrong side."""
+        """SceneError if the middle of the section lies inside the rigid body: the surface is on the wrong side."""
         from shapely import Polygon
 
         centre = Polygon(self.part.outline.points).centroid
@@ -134,9 +134,9 @@ class Scene:
 
     @property
     def folding(self) -> Folding | None:
-        """Which arms the scene can tell from a spring or from nothing; None without memory.
+        """Which relaxation times need a memory, act as springs, or are always relaxed; None without memory.
 
-        Its window reaches from the shortest stroke to the time from mounting to the end.
+        The time window reaches from the duration of the shortest stroke to the time from mounting to the end.
         """
         if self.part.prony is None:
             return None
@@ -146,7 +146,7 @@ class Scene:
 
     @property
     def rubber(self) -> Hyperelastic:
-        """What is solved as elastic: the long-term material, and the arms that never relax here as springs."""
+        """The elastic material: long-term behaviour, and the arms that never relax in this scene, as springs."""
         folding = self.folding
         if folding is None or folding.stiffening == 1:
             return self.part.material
@@ -156,35 +156,35 @@ class Scene:
 
     @property
     def arms(self) -> PronySeries | None:
-        """Arms that need a memory, relative to ``rubber``; None if there are none."""
+        """Prony series of the arms that need a memory, moduli relative to ``rubber``; None without any."""
         folding = self.folding
         return folding.kept if folding is not None and folding.kept.times else None
 
     def may_stick(self, contact: Contact) -> bool:
-        """Whether a contact's friction is solved as stick and slip; see ``why_it_may_stick``."""
+        """Whether friction in a contact is solved as stick and slip; see ``why_it_may_stick``."""
         return self._sticking(contact)[0]
 
     def why_it_may_stick(self, contact: Contact) -> str:
-        """Reason in words why a contact's friction is solved as stick and slip, or as full sliding."""
+        """Reason, as text, why friction in a contact is solved as stick and slip, or as full sliding."""
         return self._sticking(contact)[1]
 
     def _sticking(self, contact: Contact) -> tuple[bool, str]:
-        """At a reversal a surface first carries the part along, at most by ``2 mu p / G`` of its height; p about G."""
+        """After a reversal a contact sticks over at most ``2 mu p / G`` times the height of the part; p is about G."""
         if contact.friction_law is None:
             return False, "no friction"
         if contact.sticks is not None:
             return contact.sticks, "as the scene asks"
         if not contact.slides:
-            return True, "the surface stands still"
+            return True, "the surface does not slide"
         strokes = self.program.cycle
         if len({math.copysign(1.0, stroke.direction) for stroke in strokes}) == 1:
-            return False, "the sliding never turns round"
+            return False, "the direction of sliding never changes"
         carried, shortest = self.elastic_slip(contact), self.program.shortest_way
-        told = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
-        return shortest < carried, told
+        reason = f"the shortest stroke is {shortest:.3g} mm, an elastic slip about {carried:.2g} mm at most"
+        return shortest < carried, reason
 
     def elastic_slip(self, contact: Contact) -> float:
-        """How far at most a surface carries the part along before it slips [mm]: ``2 mu`` of its height, p about G."""
+        """Largest travel before the contact slips [mm]: ``2 mu`` times the height of the part; p is about G."""
         law = contact.friction_law
         if law is None:
             return 0.0
@@ -194,12 +194,12 @@ class Scene:
 
     @property
     def marks(self) -> tuple[int, ...]:
-        """Strokes as they are solved that a jump must not pass over."""
+        """Numbers of solved strokes that no cycle jump may pass (``save.strokes``)."""
         return tuple(self.program.parts * strokes for strokes in self.save.strokes)
 
     @property
     def kept(self) -> tuple[int, ...]:
-        """Strokes as they are solved whose sections are kept, new and at the end among them."""
+        """Numbers of solved strokes whose loaded section is saved; the first and the last are among them."""
         return (0, *self.marks, self.program.strokes)
 
     @property
@@ -209,5 +209,5 @@ class Scene:
 
     @property
     def followed(self) -> tuple[Contact, ...]:
-        """Contacts that the mesh follows."""
+        """Contacts in which the mesh is refined."""
         return tuple(c for c in self.contacts if c.refine or c.wears)

@@ -9,7 +9,7 @@ from ngwear.errors import SceneError, typed
 
 
 def record(cls: Any, place: str, table: Any) -> Any:
-    """Build a dataclass from a table that has its fields as keys."""
+    """Build a dataclass from a table whose keys are the names of its fields."""
     if not isinstance(table, dict):
         raise SceneError(place, table, "must be a table")
     own = fields(cls)
@@ -22,7 +22,7 @@ def record(cls: Any, place: str, table: Any) -> Any:
 
 
 def coordinate(place: str, value: Any, *, pair: bool) -> Any:
-    """A number, or a pair of two."""
+    """Read a number, or a pair of numbers."""
     if pair:
         if not isinstance(value, list) or len(value) != 2:
             raise SceneError(place, value, "must be two numbers [x, y]")
@@ -31,7 +31,7 @@ def coordinate(place: str, value: Any, *, pair: bool) -> Any:
 
 
 def known(prefix: str, table: Any, allowed: set[str]) -> None:
-    """Refuse what is no table, and keys that are not allowed."""
+    """SceneError if this is not a table, or has unknown keys."""
     if not isinstance(table, dict):
         raise SceneError(prefix.removesuffix("."), table, "must be a table")
     for key, value in table.items():
@@ -40,14 +40,14 @@ def known(prefix: str, table: Any, allowed: set[str]) -> None:
 
 
 def get(table: dict[str, Any], place: str, key: str) -> Any:
-    """A value that must be there."""
+    """The value of a required key."""
     if key not in table:
         raise SceneError(f"{place}.{key}", None, "is missing")
     return table[key]
 
 
 def subtable(data: dict[str, Any], key: str) -> dict[str, Any]:
-    """A table that must be there."""
+    """A required table."""
     value = get(data, "scene file", key)
     if not isinstance(value, dict):
         raise SceneError(key, value, f"must be a table [{key}]")

@@ -1,4 +1,4 @@
-"""Scenes written as TOML files, from which ``read_scene`` gives them back."""
+"""Write scenes to TOML files that ``read_scene`` reads."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tomli_w
 
@@ -17,20 +17,16 @@ from ngwear.scene.read_laws import FRICTION_LAWS, WEAR_LAWS
 from ngwear.scene.read_material import MATERIALS
 from ngwear.surfaces import Cylinder, Plane
 
-if TYPE_CHECKING:
-    from ngwear.scene.pin_scene import PinScene
-    from ngwear.scene.scene import Scene
-
 Table = dict[str, Any]
 
 
-def write_wear_scene(scene: Scene, path: Path) -> None:
-    """Write a scene, and its outline into ``NAME.contour.toml`` beside it, NAME being the file's own.
+def write_wear_scene(scene: Any, path: Path) -> None:
+    """Write a scene to NAME.toml, and its outline to ``NAME.contour.toml`` in the same folder.
 
     Raises
     ------
     SceneError
-        For what a scene file cannot say, such as a law or material of one's own, or a file that cannot be written.
+        If a scene file cannot represent something, such as a user-defined law or material, or cannot be written.
     GeometryError
         If the outline's file cannot be written.
     """
@@ -52,18 +48,18 @@ def write_wear_scene(scene: Scene, path: Path) -> None:
     }
     if program.rest < float("inf"):
         data["program"]["rest"] = program.rest
-    text = _text(data)  # first of all: what cannot be said leaves no file
+    text = _text(data)  # before any file is written: it may raise SceneError
     part.outline.write(outline)
     _write(path, text)
 
 
-def write_pin_scene(scene: PinScene, path: Path) -> None:
-    """Write a scene of a pin on a plate.
+def write_pin_scene(scene: Any, path: Path) -> None:
+    """Write a ``PinScene``.
 
     Raises
     ------
     SceneError
-        For what a scene file cannot say, or a file that cannot be written.
+        If a scene file cannot represent something, or cannot be written.
     """
     pin = _given(scene.pin, without=("material", "series", "friction"))
     if scene.pin.friction_law is not None:
@@ -91,13 +87,13 @@ def _write(path: Path, text: str) -> None:
 
 
 def _given(record: Any, without: Sequence[str] = ()) -> Table:
-    """The fields of a dataclass that have not their default."""
+    """The fields of a dataclass that differ from their default."""
     values = {f.name: getattr(record, f.name) for f in fields(record) if f.name not in without}
     default = {f.name: f.default for f in fields(record) if f.default is not MISSING}
     given = {name: value for name, value in values.items() if name not in default or value != default[name]}
     for name, value in given.items():
         if isinstance(value, float) and not math.isfinite(value):
-            raise SceneError(name, value, "a scene file holds finite numbers only: run the scene from Python")
+            raise SceneError(name, value, "a scene file holds only finite numbers: run the scene from Python")
     return {name: list(value) if isinstance(value, tuple) else value for name, value in given.items()}
 
 
@@ -107,7 +103,7 @@ def _kind(place: str, value: Any, known: Mapping[str, Any]) -> str:
         if type(value) is kind:
             return name
     names = ", ".join(kind.__name__ for kind in known.values())
-    raise SceneError(place, value, f"a scene file cannot say this; it knows {names}: run the scene from Python")
+    raise SceneError(place, value, f"a scene file can only hold {names}: run the scene from Python")
 
 
 def _material(material: Any, prony: PronySeries | None) -> Table:
@@ -143,7 +139,7 @@ def _friction(place: str, friction: Any) -> Any:
 
 
 def _friction_factor(place: str, law: Any) -> Table:
-    if type(law) is Constant:  # a factor must be a table: the same at every distance
+    if type(law) is Constant:  # a factor must be a table: here a constant over the distance
         law = Lubrication(distance=(0.0,), coefficient=(law.value,))
     factor: Table = _friction(place, law)
     return factor
@@ -161,7 +157,7 @@ def _surface(place: str, surface: Any, *, axisymmetric: bool) -> Table:
         return {"type": "plane", "point": [x, y], "normal": [nx, ny]}
     if type(surface) is Cylinder:
         return {"type": "cylinder", **_given(surface)}
-    raise SceneError(place, surface, "a scene file cannot say this; it knows Plane and Cylinder")
+    raise SceneError(place, surface, "a scene file can only hold Plane and Cylinder: run the scene from Python")
 
 
 def _deactivation(deactivation: Any) -> Table | None:

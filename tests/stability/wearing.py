@@ -213,6 +213,6 @@ def cases() -> list[Case]:
     for r, mu, k in tips:
         how = f"radius {r:g} mm, mu {mu:g}{', worn' if k else ''}"
         found.append(Case("tip of a lip", how, partial(lip, r, mu, k)))
-    creases = "no equilibrium found that carries the load.*friction of 0.5 .* compresses the surface at .* it creases"
+    creases = "no equilibrium found under the mounting load.*friction of 0.5 .* compresses the surface at .* it creases"
     found.append(Case("tip of a lip", "radius 0.005 mm, mu 0.5", partial(lip, 0.005, 0.5, 0.0), creases))
     return found

@@ -70,7 +70,7 @@ def test_unusable_arguments_end_with_2(capsys):
 def test_folder_with_a_run_is_not_overwritten(finished, sheet_file, capsys):
     before = {p.name: p.read_bytes() for p in finished.iterdir()}
     assert run(sheet_file, finished) == BAD_INPUT
-    assert "already holds a run: go on with --resume, or give another folder" in capsys.readouterr().err
+    assert "already holds a run: continue it with --resume, or give another folder" in capsys.readouterr().err
     assert {p.name: p.read_bytes() for p in finished.iterdir()} == before
 
 
@@ -128,7 +128,7 @@ def test_interrupt_keeps_what_there_is(tmp_path, sheet_file, capsys, monkeypatch
     with monkeypatch.context() as patch:
         patch.setattr(Stepper, "advance", interrupted)
         assert run(sheet_file, tmp_path / "out") == INTERRUPTED
-    assert "interrupted; go on with --resume" in capsys.readouterr().err
+    assert "interrupted; continue with --resume" in capsys.readouterr().err
     assert run(sheet_file, tmp_path / "out", "--resume") == OK
 
 

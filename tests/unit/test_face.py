@@ -120,9 +120,9 @@ def test_a_result_hands_out_ngsolves_objects(folder):
 
 def test_what_was_not_kept_is_said(folder):
     out, result = folder
-    with pytest.raises(ResultError, match=r"stroke 9 was not kept.* 1, 2, 3, 4"):
+    with pytest.raises(ResultError, match=r"stroke 9 was not saved.* 1, 2, 3, 4"):
         result.outline(9)
-    with pytest.raises(ResultError, match=r"contact 'rod' was not kept; kept: \['roller'\]"):
+    with pytest.raises(ResultError, match=r"contact 'rod' was not saved; saved: \['roller'\]"):
         result.pressure("rod")
     with pytest.raises(ResultError, match="no stroke 'back' was kept"):
         result.pressure(kind="back")
@@ -153,7 +153,7 @@ def test_what_a_file_cannot_say_leaves_none(sheet_scene_module, tmp_path):
         pass
 
     part = replace(sheet_scene_module.part, material=Rubber(shear=1.0, bulk_modulus=100.0))
-    with pytest.raises(SceneError, match="a scene file cannot say this; it knows NeoHooke, MooneyRivlin"):
+    with pytest.raises(SceneError, match="a scene file can only hold NeoHooke, MooneyRivlin"):
         replace(sheet_scene_module, part=part).write(tmp_path / "own.toml")
     assert not list(tmp_path.iterdir())
 
@@ -178,7 +178,7 @@ def test_bad_ways_to_run_are_refused(sheet_scene_module):
     for how, told in (
         ({"resume": True}, "needs the folder"),
         ({"accuracy": "fine"}, "must be one of"),
-        ({"accuracy": 0.01, "alone": True}, "met by several runs"),
+        ({"accuracy": 0.01, "alone": True}, "needs several runs"),
     ):
         with pytest.raises(SceneError, match=told):
             nw.run(sheet_scene_module, progress=False, **how)

@@ -183,7 +183,7 @@ def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
         (tmp_path / name).write_text(json.dumps(left))
     summary = run_stated(scene("implicit"), out=tmp_path, figures=False).summary
     assert summary["warnings"] == [
-        "the coarsest companion run gave up: no equilibrium; the error of the mesh is taken as of first order"
+        "the coarsest run gave up: no equilibrium; first order is assumed for the error of the mesh"
     ]
     ratio = coarser_by(element_edge(result.recorder.rows), other["element edge [mm]"])
     found = relative_errors(reading(result.recorder.rows), other["reading"], ratio=ratio)
@@ -216,7 +216,7 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
     summary = run_stated(scene("implicit"), out=tmp_path, enough={DEPTH: over * two}, figures=False).summary
     assert ("solves of the coarsest companion" in summary) is needed
     assert summary["error estimates"][DEPTH] == pytest.approx(errors[DEPTH] if needed else two)
-    assert not any("companion" in warning for warning in summary["warnings"])
+    assert not any("coarse" in warning for warning in summary["warnings"])
 
 
 def test_a_companion_that_has_ended_is_not_run_again(finished, monkeypatch):
@@ -244,9 +244,7 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     (tmp_path / FILE).write_text(json.dumps(left))
     summary = run_stated(short, out=tmp_path, figures=False).summary
     assert summary["status"] == "completed"
-    assert summary["warnings"] == [
-        "the coarser companion run gave up: no equilibrium; the error of the mesh is not known"
-    ]
+    assert summary["warnings"] == ["the coarser run gave up: no equilibrium; the error of the mesh is not known"]
     assert "peak pressure [-]" not in summary["error estimates"]
     assert np.isfinite(summary["error estimates"]["maximum depth [-]"])
 

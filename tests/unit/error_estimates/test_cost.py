@@ -175,7 +175,7 @@ def test_tiny_budget_runs_what_it_can_and_promises_nothing():
     assert len(study.runs) == 1
     assert all(choice.setting is None for choice in choices)
     text = paragraph("block", study, choices, 1.05)
-    assert "The scene as it stands was not run: it would take about 1 s" in text
+    assert "The scene as given was not run: it would take about 1 s" in text
     assert "For 5 %, 1 % and 0.1 % of the maximum depth: not reached" in text
     assert "were tried with" not in text
     assert not set(study.left_out) & set(study.runs)
@@ -210,7 +210,7 @@ def test_too_small_a_budget_says_what_it_would_take():
 def test_base_on_a_coarser_mesh_is_told():
     study, choices, _ = study_of(8.0)
     assert study.base == (1, 2)
-    assert "other knobs were tried with edge 0.2" in paragraph("block", study, choices, 8.0).replace(
+    assert "other parameters were varied with edge 0.2" in paragraph("block", study, choices, 8.0).replace(
         "edge edge", "edge"
     )
 
@@ -262,7 +262,7 @@ def test_settings_that_give_up_alike_are_told_by_what_they_have_in_common():
 def test_measured_error_beyond_the_target_gives_way():
     ladders, first = (replace(EDGE, own=4), JUMP), (2, 1)
     study = climb(ladders, DEPTH, 1000.0, Fake())
-    assert confirm(study, 1000.0, Fake())[0].setting == first, "changes both knobs"
+    assert confirm(study, 1000.0, Fake())[0].setting == first, "changes both parameters"
 
     def couples(setting, left):
         """Together they err by far more, which the ladders do not show."""

@@ -335,7 +335,7 @@ def test_command_line_refuses_in_one_line(sheet_file, capsys, tmp_path):
     assert shown.out == ""
     assert shown.err.startswith("ngwear: cost.budget = -1.0: must be")
     assert main(["cost", str(sheet_file), "--budget", "0.05"]) == BAD_INPUT
-    assert "does not reach for one run" in capsys.readouterr().err
+    assert "is too small for one run" in capsys.readouterr().err
     assert main(["cost", str(tmp_path / "nowhere.toml"), "--budget", "10"]) == BAD_INPUT
     with pytest.raises(SystemExit):
         main(["cost", str(sheet_file)])

@@ -137,7 +137,7 @@ def test_a_finest_level_that_is_not_enough_warns(tmp_path, monkeypatch):
 
 
 def test_a_single_run_is_no_answer():
-    with pytest.raises(SceneError, match="is met by several runs"):
+    with pytest.raises(SceneError, match="needs several runs"):
         Stepper(to(0.01))
 
 
@@ -149,7 +149,7 @@ def test_a_level_keeps_what_is_not_about_the_error():
 
 @pytest.mark.parametrize(
     ("asked", "told"),
-    [("rough", "accuracy = 'rough': must be one of"), ("1e-7", "is less than an estimate"), ("2", "must be below 1")],
+    [("rough", "accuracy = 'rough': must be one of"), ("1e-7", "is below 0.001"), ("2", "must be below 1")],
 )
 def test_the_command_line_refuses(asked, told, sheet_file, tmp_path, capsys):
     assert main(["run", str(sheet_file), "--out", str(tmp_path / "out"), "--accuracy", asked]) == 2

@@ -113,7 +113,7 @@ def test_a_roller_that_nothing_cools_warms_as_a_whole(told):
     warm = found["warming of the counter-surface over the program if nothing cools it [K]"]
     assert warm == pytest.approx(2e5 / 42.7, rel=0.1)
     assert found["matters"] is None
-    assert "what cools it decides" in found["verdict"]
+    assert "this depends on the cooling" in found["verdict"]
 
 
 def test_sticking_that_the_scene_forbids_matters(told):
@@ -147,7 +147,7 @@ def test_shipped_seals_text(seal):
     found = explain(replace(seal, accuracy=Accuracy(mounting=0.06)))
     text = "\n".join(lines(found))
     assert "left out: viscosity, stick-slip, heat" in text
-    assert "heat cannot be told from the scene: the strokes have no speed" in text
+    assert "heat cannot be judged from the scene: the strokes have no speed" in text
     assert "friction at 'rod', fluid pressure" in text
     assert found["absent"]["adhesion"]["matters"] is False
     assert max(map(len, text.splitlines())) < 130

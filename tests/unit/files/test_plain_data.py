@@ -190,7 +190,11 @@ def test_what_is_not_plain_is_refused_when_it_is_written(value):
         packed({"a": [value]}, KIND, CLASSES)
 
 
-@pytest.mark.parametrize("classes", [(int,), ("Point",), (Point, enum.Enum("Point", "A")), (lambda: 1,)], ids=str)
+@pytest.mark.parametrize(
+    "classes",
+    [(int,), ("Point",), (Point, enum.Enum("Point", "A")), (lambda: 1,)],
+    ids=["no dataclass", "name", "same name", "function"],
+)
 def test_classes_are_dataclasses_or_enumerations_of_different_names(classes):
     with pytest.raises(TypeError, match=r"must be a dataclass or an enumeration|two classes are named Point"):
         by_name(classes)
@@ -332,8 +336,8 @@ def test_a_file_cut_anywhere_or_changed_anywhere_is_refused_or_the_same(tmp_path
             {"version": 4, "ngwear": "9.0"},
             r"a test of version 4, written by ngwear 9\.0.*throw it away, or take ngwear 9",
         ),
-        ({"format": "ngwear other"}, "is no test of ngwear, but calls itself 'ngwear other'; throw it away"),
-        ({"format": None}, "is no test of ngwear, but calls itself None"),
+        ({"format": "ngwear other"}, "is not a test of ngwear: its format is 'ngwear other'; throw it away"),
+        ({"format": None}, "is not a test of ngwear: its format is None"),
     ],
 )
 def test_other_versions_and_kinds_say_what_they_are_and_what_to_do(about, told, tmp_path):

@@ -192,7 +192,7 @@ def test_one_of_a_later_version_says_so(begun, sheet):
 def test_another_file_of_ngwear_is_none(begun, sheet):
     with (begun / CHECKPOINT).open("wb") as file:
         write(file, packed(1.0, Format("result of a sweep", FORMAT.version, "")))
-    with pytest.raises(ResultError, match="is no checkpoint of ngwear, but calls itself 'ngwear result of a sweep'"):
+    with pytest.raises(ResultError, match="is not a checkpoint of ngwear: its format is 'ngwear result of a sweep'"):
         load(Folder(begun, sheet, resume=True), sheet)
 
 

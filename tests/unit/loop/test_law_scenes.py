@@ -254,7 +254,7 @@ def test_explain_says_which_law_and_what_the_scene_meets(tmp_path, write_sheet, 
     rates = ("specific_wear_rate = 1.0e-3", f"specific_wear_rate = {RATES}")
     file = with_friction(tmp_path, write_sheet, PHASES, rates, ("strokes = 4", "strokes = 25"))
     effects = explain(read_scene(file))["effects"]
-    assert "by lubrication, 4 rows to 300 mm; the scene meets mu = 0.06 to 0.4" in effects["friction at 'roller'"]
+    assert "by lubrication, 4 rows to 300 mm; mu = 0.06 to 0.4 over the program" in effects["friction at 'roller'"]
     assert "k = 0 to 0.00075 mm²/N" in effects["wear rate at 'roller'"]
     assert main(["explain", str(file)]) == 0
     assert "by lubrication" in capsys.readouterr().out

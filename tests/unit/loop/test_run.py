@@ -163,7 +163,7 @@ def test_roller_under_force_finds_the_sheet_from_where_it_is(tmp_path, write_she
 
 def test_folder_that_holds_a_run_is_not_overwritten(finished, sheet):
     before = {p.name: p.read_bytes() for p in finished.iterdir()}
-    with pytest.raises(ResultError, match=r"already holds a run: go on with --resume, or give another folder"):
+    with pytest.raises(ResultError, match=r"already holds a run: continue it with --resume, or give another folder"):
         run(sheet, out=finished)
     assert {p.name: p.read_bytes() for p in finished.iterdir()} == before
 
@@ -188,7 +188,7 @@ def test_resume_writes_a_series_that_a_kill_has_left_behind(finished, sheet):
 def test_resume_with_a_changed_scene_is_refused(tmp_path, finished, write_sheet):
     scene = read_scene(write_sheet(tmp_path / "other", ("shear = 1.0", "shear = 1.1")))
     before = (finished / CHECKPOINT).read_bytes()
-    with pytest.raises(ResultError, match=r"another scene \(or of a changed one\): give another folder"):
+    with pytest.raises(ResultError, match=r"another scene, or the scene was changed: give another folder"):
         run(scene, out=finished, resume=True)
     assert (finished / CHECKPOINT).read_bytes() == before
 
@@ -409,7 +409,7 @@ def test_force_far_too_high_gives_up_while_mounting_and_says_so(tmp_path, write_
     assert result.state is None
     assert re.search(r"mount|after stroke 0\b", result.message), result.message
     assert "roller force" in result.message
-    assert "no equilibrium found that carries the load; lower force" in result.message
+    assert "no equilibrium found under the mounting load; lower force" in result.message
     summary = summary_of(tmp_path / "out")
     assert summary["status"] == GAVE_UP
     assert summary["strokes"] == 0
@@ -557,7 +557,7 @@ def test_a_mesh_that_stays_is_fine_wherever_the_contact_may_come(tmp_path, write
 
 def test_surface_that_never_touches_is_refused(tmp_path, write_sheet):
     scene = read_scene(write_sheet(tmp_path, ("force = 0.5\n", ""), ("3.99", "4.1")))
-    with pytest.raises(SceneError, match=r"'roller'.*lifts off: it touches its edges in no stroke.*move it closer"):
+    with pytest.raises(SceneError, match=r"'roller'.*touches its edges in no stroke.*move it closer"):
         run(scene, figures=False)
 
 

@@ -77,7 +77,7 @@ def test_unknown_fields_strokes_and_kinds_are_refused_with_those_that_are_known(
     result = read_result(finished)
     with pytest.raises(ResultError, match=r"no field is called 'heat': choose one of 'von Mises stress', 'mean pres"):
         draw_section(result, field="heat")
-    with pytest.raises(ResultError, match=r"no section is kept of stroke 3: those of 0, 4 are; save\.strokes"):
+    with pytest.raises(ResultError, match=r"the section of stroke 3 is not saved; saved: 0, 4; save\.strokes"):
         draw_section(result, stroke=3)
     with pytest.raises(ResultError, match=r"no stroke is called 'back': the cycle has \['stroke'\]"):
         draw_section(result, kind="back")

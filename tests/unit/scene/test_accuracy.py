@@ -68,12 +68,12 @@ def test_a_companion_has_fewer_elements_across(across):
     [
         ({"across": 0.1}, "must lie between 0.5 and 200 elements"),
         ({"across": 300.0}, "must lie between 0.5 and 200 elements"),
-        ({"across": 6.0, "patch": 0.1}, r"gives what \['patch'\] gives too: leave either out"),
+        ({"across": 6.0, "patch": 0.1}, r"sets \['patch'\] too: give only one"),
         ({"error": 0.01, "across": 6.0, "wear_error": 0.1}, r"lets the run choose \['wear_error', 'across'\]"),
-        ({"error": 0.01, "patch": 0.1}, r"lets the run choose \['patch'\]: leave either out"),
+        ({"error": 0.01, "patch": 0.1}, r"lets the run choose \['patch'\]: give only one"),
         ({"error": 1.0}, "must be below 1; 0.01 is one per cent"),
-        ({"error": 1e-5}, "is less than an estimate from two meshes can see, 0.001"),
-        ({"error": -0.01}, "is less than an estimate"),
+        ({"error": 1e-5}, "is below 0.001, the smallest error"),
+        ({"error": -0.01}, "is below 0.001"),
         ({"error": float("nan")}, "must be below 1"),
         ({"longest_jump": 0.0}, "must lie between 0 and 1"),
         ({"depth_error": 0.0}, "accuracy.depth_error = 0.0: must lie between 0 and 1"),
@@ -99,13 +99,13 @@ def test_presets_have_names():
         ('preset = "draft"', None),
         ('preset = "fine"', r"accuracy.preset = 'fine': must be one of"),
         ("preset = 3", "accuracy.preset = 3: must be a text"),
-        ('preset = "draft"\npatch = 0.1', "accuracy.patch = 0.1: the preset 'draft' chooses it: leave either"),
-        ('preset = "draft"\nerror = 0.01', "accuracy.error = 0.01: the preset 'draft' chooses it: leave either"),
+        ('preset = "draft"\npatch = 0.1', "accuracy.patch = 0.1: is set by the preset 'draft': give only one"),
+        ('preset = "draft"\nerror = 0.01', "accuracy.error = 0.01: is set by the preset 'draft': give only one"),
         ('preset = "draft"\nfine = 1', "accuracy.fine = 1: unknown key; known here"),
         ("across = 6", None),
         ('across = "six"', "accuracy.across = 'six': must be a number"),
         ("error = 0.02", None),
-        ("error = 1e-9", "is less than an estimate"),
+        ("error = 1e-9", "is below 0.001"),
     ],
 )
 def test_a_scene_file_says_it(sheet_file, table, told):
@@ -179,5 +179,5 @@ def test_lost_elements_need_a_length():
     given = scene("implicit")
     losing = {"deactivation": Deactivation(depth=0.2), "wear": replace(given.wear, remesh="never")}
     for accuracy in (Accuracy(across=6.0), Accuracy(error=0.01)):
-        with pytest.raises(SceneError, match=r"give accuracy\.patch, a length in mm"):
+        with pytest.raises(SceneError, match=r"give accuracy\.patch in mm"):
             replace(given, accuracy=accuracy, **losing)

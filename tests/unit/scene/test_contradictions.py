@@ -23,14 +23,14 @@ FRICTIONLESS, WEARLESS = ("friction = 0.1\n", ""), ("specific_wear_rate = 1.0e-3
                 ("friction = 0.1", 'friction = { law = "stribeck", boundary = 1.0, full = 0.5, speed = 9.0 }'),
                 ("travel = 10.0", "travel = 10.0\nspeed = 1.0"),
             ),
-            r"'roller'\.friction.*stands still.*give a number",
+            r"'roller'\.friction.*does not slide.*give a number",
         ),
         (
             (
                 ("specific_wear_rate = 1.0e-3", "slides = false"),
                 ("friction = 0.1", 'friction = { law = "lubrication", distance = [0, 9], coefficient = [0.1, 1] }'),
             ),
-            r"'roller'\.friction.*stands still.*give a number",
+            r"'roller'\.friction.*does not slide.*give a number",
         ),
         ((("strokes = 4", "strokes = 4\nrest = 60.0"),), r"program\.rest = 60\.0: only rubber with memory"),
         ((("specific_wear_rate = 1.0e-3", "counter_wear_rate = 1.0e-5"),), r"counter_wear_rate.*specific_wear_rate as"),
