@@ -503,9 +503,11 @@ def test_checkpoint_holds_state_and_records(finished, sheet):
 
 
 def test_vtk_on_request(tmp_path, sheet):
-    scene = replace(sheet, save=Save(vtk=True))
+    program = replace(sheet.program, cycle=(replace(sheet.program.cycle[0], name="to/fro: 1"),))
+    scene = replace(sheet, save=Save(vtk=True), program=program)
     run(scene, out=tmp_path / "out", figures=False)
     (file,) = (tmp_path / "out").glob("stroke_*.vtu")
+    assert file.name.startswith("stroke_4_to_fro_ 1"), "a name that every platform allows"
     content = file.read_bytes()
     assert b"displacement" in content
     assert b"volumetric_stress" in content
