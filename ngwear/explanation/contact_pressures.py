@@ -12,7 +12,7 @@ from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import NgwearError
 from ngwear.geometry.body import Body
 from ngwear.loop.mounting import MAY_COME, mount, unworn_body
-from ngwear.loop.refinement import wanted_size
+from ngwear.loop.refinement import required_sizes
 from ngwear.loop.stage import Stage
 from ngwear.scene.contact import Contact
 from ngwear.scene.program import Stroke
@@ -134,4 +134,4 @@ def history_points(stage: Stage, states: Sequence[Array]) -> int:
     """
     if not states:
         return POINTS * stage.body.mesh.ne
-    return POINTS * Body(stage.body.contour, wanted_size(stage, list(states), reach=MAY_COME)).mesh.ne
+    return POINTS * Body(stage.body.contour, required_sizes(stage, list(states), reach=MAY_COME)).mesh.ne

@@ -160,12 +160,12 @@ def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
     phases, memory = state.phases, state.memory
     state.phases, state.memory = list(phases), copy(memory)
     try:
-        recorder.add_sections(stepper.look_ahead(state))
+        recorder.add_sections(stepper.solve_next_cycle(state))
     except (ConvergenceError, GeometryError, MeshError) as error:
         log.info("the last section is not saved: %s", error)
     finally:
         state.phases, state.memory = phases, memory
-        stepper.stand(state)
+        stepper.restore_last_stroke(state)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
