@@ -40,7 +40,7 @@ import numpy as np
 
 from ngwear.errors import NgwearError
 from ngwear.loop.result import Result
-from ngwear.loop.run import DrawnHere
+from ngwear.loop.run import LocalDrawing
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.workers import Worker, of_modules
 from ngwear.results.kept_sections import KeptSections
@@ -54,8 +54,8 @@ COARSER, LEAST_COARSER = 2.0, 1.2
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the folder of the run; a resumed run uses them
 POLL = 0.05  # s
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
-HERE = DrawnHere()
-Histories = Mapping[str, Mapping[str, list[float]]]  # as of ``quantities_of_interest.reading``
+LOCAL = LocalDrawing()
+Histories = Mapping[str, Mapping[str, list[float]]]  # as of ``quantities_of_interest.quantities``
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
@@ -236,20 +236,20 @@ class _CoarserRuns:
             self.worker.do(_run_coarser, runs)
             self.begun += runs
 
-    def first(self, folder: Path, kept: KeptSections) -> None:
+    def draw_section(self, folder: Path, kept: KeptSections) -> None:
         """Let the worker draw the section after its runs; without a worker it is drawn with the other figures."""
         if self.worker is not None:
-            self.worker.do(HERE.first, folder, kept)
+            self.worker.do(LOCAL.draw_section, folder, kept)
 
-    def rest(self, folder: Path) -> None:
+    def draw_all(self, folder: Path) -> None:
         """Draw the figures of the run, half of them in the worker if its runs are finished."""
         done = all(read_coarser_run(*run) is not None for run in self.begun)
         if self.worker is not None and self.worker.alive and done:
-            self.worker.do(HERE.rest, folder, (0, 2))
-            HERE.rest(folder, (1, 2))
+            self.worker.do(LOCAL.draw_all, folder, (0, 2))
+            LOCAL.draw_all(folder, (1, 2))
             if self.worker.did():
                 return
-        HERE.rest(folder)  # raises the error that the worker had
+        LOCAL.draw_all(folder)  # raises the error that the worker had
 
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Wait for the coarser runs, and write the error estimates into the summary."""

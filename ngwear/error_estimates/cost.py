@@ -17,7 +17,7 @@ from ngwear.error_estimates.cost_study import Study
 from ngwear.error_estimates.cost_table import as_dict, table
 from ngwear.error_estimates.cost_text import paragraph
 from ngwear.error_estimates.ladder import STOPPED, Measurement, Setting, labels_of
-from ngwear.error_estimates.settings import Parameter, at, changes, parameters
+from ngwear.error_estimates.settings import Parameter, changes, parameters, with_setting
 from ngwear.error_estimates.settings_search import Choice, confirm, run_ladders
 from ngwear.errors import SceneError
 from ngwear.files.result_folder import GAVE_UP, OutFolder
@@ -128,7 +128,7 @@ def cost(
         run = _runner(scene, varied, Path(path) / RUNS, bar.begin, bar.end)
         study = run_ladders(ladders, main, budget, run)
         choices = confirm(study, budget, run)
-    written = [None if c.setting is None else changes(scene, at(scene, varied, c.setting)) for c in choices]
+    written = [None if c.setting is None else changes(scene, with_setting(scene, varied, c.setting)) for c in choices]
     found = Cost(scene.name, budget, study, choices, written)
     if out is not None:
         _write(out, found, figures=figures)
@@ -152,12 +152,12 @@ def _runner(
     def run(setting: Setting, left: float) -> Measurement:
         begin(", ".join(labels_of(ladders, setting).values()))
         try:
-            there = at(scene, varied, setting)
+            there = with_setting(scene, varied, setting)
         except SceneError as error:
             return Measurement(status=GAVE_UP, message=str(error))
         for attempt in itertools.count():
             found, restored = _measured(Point(there, attempt), left, folder)
-            if not (restored and _worth_another(found, left)):
+            if not (restored and _has_time_now(found, left)):
                 break
         end(found.wall)
         return found
@@ -165,7 +165,7 @@ def _runner(
     return run
 
 
-def _worth_another(found: Measurement, left: float) -> bool:
+def _has_time_now(found: Measurement, left: float) -> bool:
     """Whether a run that was stopped in an earlier call has enough time now."""
     if found.status != STOPPED:
         return False

@@ -118,13 +118,13 @@ def run_to_error(
 
     Parameters and errors as ``ngwear.loop.run.run``; the coarser runs of the first level use ``worker``, if given.
     """
-    folder, asked = OutFolder(Path(out), CHECKPOINT, resume=resume), asked_for(scene)
-    done = _earlier(folder, scene, resume=resume)
+    folder, asked = OutFolder(Path(out), CHECKPOINT, resume=resume), requested_errors(scene)
+    done = _earlier_levels(folder, scene, resume=resume)
     first = (first_across(asked[DEPTH], asked.get(PEAK)), scene.accuracy.parts)
-    at = (_after(done[-1], asked) if done else None) or first
+    at = (_next_level(done[-1], asked) if done else None) or first
     while True:
         level = at_level(scene, *at)
-        _hand_down(folder, level, done)
+        _reuse_levels(folder, level, done)
         level_summary = _LevelSummary(done, at, asked)
         result = run_with_coarser_runs(
             level,
@@ -138,16 +138,16 @@ def run_to_error(
             worker=worker,
         )
         worker = None
-        finer = _after(level_summary.mine, asked) if result.status == COMPLETED else None
+        finer = _next_level(level_summary.mine, asked) if result.status == COMPLETED else None
         if finer is None:
             return result
         done.append(level_summary.mine | {"left": coarser_run_data(result)})
-        _note(folder, scene, done)
-        _put_away(folder, level_summary.mine)
+        _write_notes(folder, scene, done)
+        _move_files(folder, level_summary.mine)
         at = finer
 
 
-def _note(folder: OutFolder, scene: Scene, done: list[dict[str, Any]]) -> None:
+def _write_notes(folder: OutFolder, scene: Scene, done: list[dict[str, Any]]) -> None:
     notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
     folder.replace(NOTES, lambda file: file.write(notes))
 
@@ -157,14 +157,14 @@ def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy.with_across(across), parts=parts))
 
 
-def asked_for(scene: Scene) -> dict[str, float]:
+def requested_errors(scene: Scene) -> dict[str, float]:
     """Errors that a scene requests, by their names in the summary."""
     accuracy = scene.accuracy
     asked = {DEPTH: accuracy.error, PEAK: accuracy.peak_error}
     return {name: error for name, error in asked.items() if error is not None}
 
 
-def _after(done: Mapping[str, Any], asked: Mapping[str, float]) -> Level | None:
+def _next_level(done: Mapping[str, Any], asked: Mapping[str, float]) -> Level | None:
     others = {name: limit for name, limit in asked.items() if name != DEPTH}
     over = largest_ratio({name: done[name] for name in others if done.get(name) is not None}, others)
     return next_level((done[ACROSS], done[PARTS]), done[DEPTH], done[BY_TIME], asked[DEPTH], others=over)
@@ -196,7 +196,7 @@ class _LevelSummary:
         if PEAK in self.asked:
             summary["peak error asked for [-]"] = self.asked[PEAK]
         summary["CPU time of all levels [s]"] = round(sum(entry[CPU] for entry in levels), 3)
-        if _after(self.mine, self.asked) is not None:
+        if _next_level(self.mine, self.asked) is not None:
             return
         for name, limit in self.asked.items():
             if known and name in estimated and estimated[name] > limit:
@@ -207,7 +207,7 @@ class _LevelSummary:
             summary["warnings"].append(f"the finest level {says}")
 
 
-def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:
+def _earlier_levels(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:
     """Data of the levels that an earlier process has completed."""
     file = folder.path / NOTES
     if not resume or not file.exists():
@@ -221,19 +221,19 @@ def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str,
         raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
     if of != fingerprint(scene):
         raise ResultError(f"{folder.path} holds a run of another scene, or the scene was changed: give another folder")
-    _put_away(folder, levels[-1])
+    _move_files(folder, levels[-1])
     return levels
 
 
-def _place(folder: OutFolder, level: Mapping[str, Any]) -> Path:
+def _level_folder(folder: OutFolder, level: Mapping[str, Any]) -> Path:
     """Folder of a level's files."""
     parts = "" if level[PARTS] == 1 else f" in {level[PARTS]} parts"
     return folder.path / LEVELS / f"{level[ACROSS]:g}{parts}"
 
 
-def _put_away(folder: OutFolder, level: Mapping[str, Any]) -> None:
+def _move_files(folder: OutFolder, level: Mapping[str, Any]) -> None:
     """Move a level's files to its own folder, the checkpoint last, so that an interrupted move can be continued."""
-    place = _place(folder, level)
+    place = _level_folder(folder, level)
     if (place / CHECKPOINT).exists():
         return
     place.mkdir(parents=True, exist_ok=True)
@@ -242,7 +242,7 @@ def _put_away(folder: OutFolder, level: Mapping[str, Any]) -> None:
         file.replace(place / file.name)
 
 
-def _hand_down(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> None:
+def _reuse_levels(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> None:
     """Use the data of earlier levels and of their coarser runs as the coarser runs of a level."""
     for power, name in ((1, FILE), (2, COARSEST)):
         coarse = coarser_scene(level, COARSER**power)
@@ -250,6 +250,6 @@ def _hand_down(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> N
             if (entry[ACROSS], entry[PARTS]) == (coarse.accuracy.across, coarse.accuracy.parts):
                 write_coarser_run(coarse, folder.path / name, entry["left"])
             for file in (FILE, COARSEST):
-                earlier = _place(folder, entry) / file
+                earlier = _level_folder(folder, entry) / file
                 if read_coarser_run(coarse, earlier) is not None:
                     shutil.copy(earlier, folder.path / name)

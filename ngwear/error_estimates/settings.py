@@ -55,7 +55,7 @@ def parameters(scene: AnyScene) -> tuple[Parameter, ...]:
     return tuple(found)
 
 
-def at(scene: AnyScene, varied: Sequence[Parameter], setting: Setting) -> Any:
+def with_setting(scene: AnyScene, varied: Sequence[Parameter], setting: Setting) -> Any:
     """The scene with a setting.
 
     Raises

@@ -75,7 +75,7 @@ def run_ladders(ladders: tuple[Ladder, ...], main: str, budget: float, measure: 
                 waiting[k] = level, study.next_seconds(k, level)
         if not waiting:
             break
-        k = min(waiting, key=lambda k: (not _tells_nothing(study, k), waiting[k][1], k))
+        k = min(waiting, key=lambda k: (not _has_base_only(study, k), waiting[k][1], k))
         level, seconds = waiting[k]
         setting = with_level(study.base, k, level)
         if not seconds <= ladder_budget - study.spent:
@@ -141,7 +141,7 @@ def _next_level(study: Study, k: int) -> int | None:
     return left[0]
 
 
-def _tells_nothing(study: Study, k: int) -> bool:
+def _has_base_only(study: Study, k: int) -> bool:
     """Whether a ladder has no run other than the base, which is its coarsest level."""
     return study.ladders[k].own == 0 and len(study.levels(k)) < 2
 

@@ -20,7 +20,7 @@ from ngwear.error_estimates import settings as settings_module
 from ngwear.error_estimates.cost import CSV, JSON, PNG, RUNS, cost
 from ngwear.error_estimates.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
 from ngwear.error_estimates.ladder import STOPPED, Measurement
-from ngwear.error_estimates.settings import at, parameters
+from ngwear.error_estimates.settings import parameters, with_setting
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.loop import stepper
 from ngwear.parallel.sweep import sweep
@@ -114,20 +114,20 @@ def test_rungs_change_their_knob_and_nothing_else(seal):
     for parameter in (mesh, jump, stress, order):
         values = parameter.ladder.values
         assert list(values) == sorted(values, reverse=True)
-        assert at(seal, [parameter], (parameter.ladder.own,)) is seal
-    fine = at(seal, [mesh], (mesh.ladder.own + 1,))
+        assert with_setting(seal, [parameter], (parameter.ladder.own,)) is seal
+    fine = with_setting(seal, [mesh], (mesh.ladder.own + 1,))
     assert fine.accuracy == replace(seal.accuracy, patch=0.005, coarse=0.1)
-    coarse = at(seal, [mesh], (mesh.ladder.own - 2,))
+    coarse = with_setting(seal, [mesh], (mesh.ladder.own - 2,))
     assert coarse.accuracy == replace(seal.accuracy, patch=0.04, coarse=0.8, mounting=0.04)
-    each = at(seal, [jump], (len(jump.ladder.values) - 1,))
+    each = with_setting(seal, [jump], (len(jump.ladder.values) - 1,))
     assert (each.wear.step, each.accuracy) == ("each", seal.accuracy)
-    assert at(each, [parameters(each)[1]], (0,)).wear.step == "jump"
+    assert with_setting(each, [parameters(each)[1]], (0,)).wear.step == "jump"
 
 
 def test_orders_are_told_by_their_names_and_keep_the_elements(seal, tmp_path, write_sheet):
     order = parameters(seal)[-1]
     assert order.ladder.labels == ("order 1", "order 2", "order 3")
-    linear, cubic = (at(seal, [order], (i,)).accuracy for i in (0, 2))
+    linear, cubic = (with_setting(seal, [order], (i,)).accuracy for i in (0, 2))
     assert (linear.order, linear.stress_error) == (1, pytest.approx(seal.accuracy.stress_error**0.5))
     assert (cubic.order, cubic.stress_error) == (3, pytest.approx(seal.accuracy.stress_error**1.5))
     sticking = read_scene(write_sheet(tmp_path, ("force = 0.5", "force = 0.5\nsticks = true")))
@@ -137,7 +137,7 @@ def test_orders_are_told_by_their_names_and_keep_the_elements(seal, tmp_path, wr
 def test_arms_are_told_apart_by_what_is_kept(tmp_path, write_sheet):
     scene = read_scene(write_sheet(tmp_path, *REMEMBERS))
     arms = parameters(scene)[-1]
-    kept = [at(scene, [arms], (i,)).folding.kept.times for i in range(len(arms.ladder.values))]
+    kept = [with_setting(scene, [arms], (i,)).folding.kept.times for i in range(len(arms.ladder.values))]
     assert len(set(kept)) == len(kept)
     assert [len(k) for k in kept] == sorted(len(k) for k in kept)
     assert len(kept[-1]) == len(scene.part.prony.times)
@@ -148,9 +148,9 @@ def test_knobs_of_a_pin(tmp_path):
     file.write_text(PIN, encoding="utf-8")
     scene = read_scene(file)
     mesh, column, block, arms = parameters(scene)
-    assert at(scene, [mesh], (0,)).mesh == replace(scene.mesh, patch=2.0, coarse=6.0)
-    assert at(scene, [column], (len(column.ladder.values) - 1,)).mesh == replace(scene.mesh, column=0.125)
-    large = at(scene, [block], (len(block.ladder.values) - 1,)).mesh
+    assert with_setting(scene, [mesh], (0,)).mesh == replace(scene.mesh, patch=2.0, coarse=6.0)
+    assert with_setting(scene, [column], (len(column.ladder.values) - 1,)).mesh == replace(scene.mesh, column=0.125)
+    large = with_setting(scene, [block], (len(block.ladder.values) - 1,)).mesh
     assert large.reach / scene.mesh.reach == pytest.approx(large.beside / scene.mesh.beside)
     assert large.beside * scene.pin.thickness < scene.pin.track_radius, "the block ends before the track's centre"
     assert arms.ladder.labels == ("1 arm", "2 arms"), "steady sliding needs one"

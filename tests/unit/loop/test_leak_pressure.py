@@ -10,7 +10,7 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance
-from ngwear.error_estimates.coarser_runs import stated
+from ngwear.error_estimates.coarser_runs import combined_errors
 from ngwear.error_estimates.cost import cost
 from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.error_estimates.run_to_error import at_level
@@ -86,7 +86,7 @@ def test_its_error_is_stated_and_drawn(block):
     read = quantities(result.recorder.rows)
     assert set(read[LEAKS]) == {f"{p:g} MPa: {LEAK}" for p in PRESSURES}
     other = {**read, LEAKS: {kind: (1.02 * np.array(values)).tolist() for kind, values in read[LEAKS].items()}}
-    errors = stated(scene(), result.summary["error estimates"], read, other)
+    errors = combined_errors(scene(), result.summary["error estimates"], read, other)
     assert errors[LEAKS] == pytest.approx(0.02)
     file = read_result(folder)
     pressures = history_figure(replace(file, errors=errors)).axes[-1]

@@ -11,9 +11,9 @@ import pytest
 from conftest import REMEMBERS, _write_sheet
 
 from ngwear.error_estimates import run_to_error as module
-from ngwear.error_estimates.coarser_runs import stated
+from ngwear.error_estimates.coarser_runs import combined_errors
 from ngwear.error_estimates.run_to_error import ACROSS, PARTS, next_level, next_parts, run_to_error
-from ngwear.error_estimates.settings import at, changes, parameters
+from ngwear.error_estimates.settings import changes, parameters, with_setting
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.explanation.explain import explain
 from ngwear.loop import time_step_error
@@ -224,7 +224,7 @@ def test_the_part_of_the_time_step_is_added(creeping, finished):
     embedded, read = finished.summary["error estimates"], quantities(finished.recorder.rows)
     alike = {error: {name: values for name, values in columns.items()} for error, columns in read.items()}
     folded = creeping.folding.bound
-    said = stated(creeping, embedded, read, alike)
+    said = combined_errors(creeping, embedded, read, alike)
     for name in SEEN:
         steps = embedded.get(name, 0.0)  # the scene prescribes its steps
         assert said[name] == pytest.approx(embedded[by_time(name)] + folded + steps)
@@ -290,7 +290,7 @@ def test_the_time_step_is_a_knob_of_memory_alone(creeping, elastic):
     assert ladder.labels[:2] == ("1 part a stroke", "2 parts a stroke")
     chosen = parameters(creeping)
     setting = tuple(2 if parameter.ladder.name == "time step" else parameter.ladder.own for parameter in chosen)
-    finer = at(creeping, chosen, setting)
+    finer = with_setting(creeping, chosen, setting)
     assert finer.program.parts == 4
     assert changes(creeping, finer) == {"accuracy.parts": 4}
     thirds = {parameter.ladder.name: parameter.ladder for parameter in parameters(in_parts(creeping, 3))}["time step"]
