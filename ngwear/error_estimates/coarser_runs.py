@@ -11,7 +11,7 @@ Errors of mesh and jumps may cancel in one run and not in the next. So the error
 embedded estimate of the wear steps.
 
 With few elements across, the elements on a curved outline are finer than the setting asks for. With a single coarser
-run, its real ratio of element edges in contact is used, instead of two (``coarser_by``).
+run, its real ratio of element edges in contact is used, instead of two (``edge_ratio``).
 
 The comparison does not see errors that all runs share: points of the outline, laws and constants, prescribed wear steps
 (``wear.step`` other than ``"jump"``), and the time step. Three of them are estimated separately and added: relaxation
@@ -20,8 +20,8 @@ time step (``ngwear.loop.time_step_error``).
 
 Tearing does not converge with the mesh: elements of half the side tear nearly twice as much
 (``ngwear.verify.torn_seal``). So the torn area, and what comes loose by it, is an error of the total lost area, and of
-the depth as far as it grows with that area (``growth``). Elements that may be lost are not refined at the ends of the
-contact, where pressures peak: the differences of the three runs do not yet decrease there. The error of the peak
+the depth as far as it grows with that area (``depth_exponent``). Elements that may be lost are not refined at the ends
+of the contact, where pressures peak: the differences of the three runs do not yet decrease there. The error of the peak
 pressure is then at least that by the first coarser run alone.
 """
 
@@ -40,11 +40,11 @@ import numpy as np
 
 from ngwear.errors import NgwearError
 from ngwear.loop.result import Result
-from ngwear.loop.run import DrawnHere
+from ngwear.loop.run import LocalDrawing
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.workers import Worker, of_modules
 from ngwear.results.kept_sections import KeptSections
-from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, WHOLE, element_edge, reading
+from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, RUN_COLUMNS, element_edge, quantities
 from ngwear.results.recorder import TORN, Recorder, fingerprint
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.accuracy import LEAST_ACROSS, Tolerances
@@ -56,8 +56,8 @@ COARSER, LEAST_COARSER = 2.0, 1.2
 FILE, COARSEST = "companion.json", "companion_coarsest.json"  # in the run's folder: a resumed run finds them there
 POLL = 0.05  # s: nobody waits longer for nothing, and it takes no time
 COSTS = (("solves", ""), ("elements", ""), ("CPU time", " [s]"))
-HERE = DrawnHere()
-Histories = Mapping[str, Mapping[str, list[float]]]  # as of ``quantities_of_interest.reading``
+LOCAL = LocalDrawing()
+Histories = Mapping[str, Mapping[str, list[float]]]  # as of ``quantities_of_interest.quantities``
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
@@ -82,12 +82,12 @@ def scaled(scene: Scene, factor: float) -> Scene:
     return replace(scene, accuracy=changed, deactivation=lost)
 
 
-def coarser(scene: Scene, factor: float = COARSER) -> Scene:
+def coarser_scene(scene: Scene, factor: float = COARSER) -> Scene:
     """The scene of a coarser run; it saves nothing."""
     return replace(scaled(scene, factor), save=replace(scene.save, strokes=(), vtk=False))
 
 
-def coarser_by(mine: float, other: float) -> float:
+def edge_ratio(mine: float, other: float) -> float:
     """Ratio of the element edges in contact of a coarser run and the run, from both edges [mm].
 
     At most 2. It is less if both meshes follow a curved outline: then their errors differ less, too.
@@ -95,7 +95,7 @@ def coarser_by(mine: float, other: float) -> float:
     return float(np.clip(other / mine, LEAST_COARSER, COARSER)) if mine > 0 and other > 0 else COARSER
 
 
-def stated(
+def combined_errors(
     scene: Scene,
     embedded: Mapping[str, float],
     mine: Histories,
@@ -114,7 +114,7 @@ def stated(
     mine, other, coarsest : mapping
         Quantities of interest of the run and of the coarser runs; None if the coarsest gave up or is not needed.
     ratio : float
-        Ratio of element edges of the first coarser run (``coarser_by``); used without the coarsest only.
+        Ratio of element edges of the first coarser run (``edge_ratio``); used without the coarsest only.
 
     Returns
     -------
@@ -124,7 +124,7 @@ def stated(
     levels = relative_errors(mine, other, coarsest, ratio=ratio if coarsest is None else COARSER)
     out = dict(embedded)
     folded = 0.0 if scene.folding is None else scene.folding.bound
-    steps = {name: embedded[name] for name in WHOLE if name in embedded}
+    steps = {name: embedded[name] for name in RUN_COLUMNS if name in embedded}
     prescribed = {} if scene.wear.step == "jump" else steps
     for name, error in levels.items():
         out[name] = error + folded + prescribed.get(name, 0.0) + embedded.get(f"{name[:-4]} {BY_TIME_STEP}", 0.0)
@@ -133,7 +133,7 @@ def stated(
     torn = embedded.get(TORN, 0.0)
     if LOST in levels:
         out[LOST] += torn
-        out[DEPTH] += torn * growth(mine)
+        out[DEPTH] += torn * depth_exponent(mine)
     if scene.deactivation is not None and PEAK in levels:
         out[PEAK] = max(out[PEAK], relative_errors(mine, other)[PEAK])
     both = "mesh" if prescribed else "mesh and wear steps"
@@ -144,12 +144,12 @@ def stated(
     return out
 
 
-def excess(errors: Mapping[str, float], asked: Mapping[str, float]) -> float:
+def largest_ratio(errors: Mapping[str, float], asked: Mapping[str, float]) -> float:
     """Largest ratio of an estimated error to the requested one, by name [-]; 0 if none of them is estimated."""
     return max((errors[name] / limit for name, limit in asked.items() if name in errors), default=0.0)
 
 
-def growth(mine: Histories) -> float:
+def depth_exponent(mine: Histories) -> float:
     """Exponent p of ``maximum depth ~ total lost area^p`` over the last half of a run, 0 to 1.
 
     It is below 1 for contacts that widen as they wear: 2/3 for a parabola, 1/2 for a wedge.
@@ -160,7 +160,7 @@ def growth(mine: Histories) -> float:
     return min(1.0, math.log(depth[-1] / depth[0]) / math.log(area[-1] / area[0]))
 
 
-def run_stated(
+def run_with_coarser_runs(
     scene: Scene,
     *,
     out: Path | str,
@@ -168,8 +168,8 @@ def run_stated(
     progress: bool = False,
     throw: bool = True,
     figures: bool = True,
-    told: Callable[[dict[str, Any]], None] | None = None,
-    enough: Mapping[str, float] | None = None,
+    on_summary: Callable[[dict[str, Any]], None] | None = None,
+    requested: Mapping[str, float] | None = None,
     worker: Worker | None = None,
 ) -> Result:
     """Run a scene and, in a second process, its coarser runs; ``summary["error estimates"]`` uses all of them.
@@ -178,7 +178,7 @@ def run_stated(
 
     Parameters
     ----------
-    told : callable or None
+    on_summary : callable or None
         Called with the summary of a completed run; it may add to it.
     enough : mapping or None
         Requested errors by name. The coarsest run is left out if the first one, with first order, shows no larger
@@ -189,12 +189,12 @@ def run_stated(
     If the coarsest run gives up, first order is assumed; if the first one gives up, the error of the mesh is not known.
     The summary then has a warning. The second process also draws half of the figures if it is free.
     """
-    companions = _Companions(scene, Path(out), enough, worker)
+    companions = _CoarserRuns(scene, Path(out), requested, worker)
 
     def state(recorder: Recorder, summary: dict[str, Any]) -> None:
         companions.state(recorder, summary)
-        if told is not None:
-            told(summary)
+        if on_summary is not None:
+            on_summary(summary)
 
     with companions:
         return run_scene(
@@ -209,19 +209,22 @@ def run_stated(
         )
 
 
-class _Companions:
+class _CoarserRuns:
     """The coarser runs, in a second process, the finer first; each writes its quantities of interest to a file.
 
     Files of an earlier process are used. The second process also draws figures (``ngwear.loop.run.Drawing``).
     """
 
-    def __init__(self, scene: Scene, folder: Path, enough: Mapping[str, float] | None, worker: Worker | None) -> None:
-        self.scene, self.enough, self.worker = scene, enough, worker
-        self.runs = [(coarser(scene, COARSER**power), folder / name) for power, name in ((1, FILE), (2, COARSEST))]
+    def __init__(
+        self, scene: Scene, folder: Path, requested: Mapping[str, float] | None, worker: Worker | None
+    ) -> None:
+        self.scene, self.requested, self.worker = scene, requested, worker
+        levels = ((1, FILE), (2, COARSEST))
+        self.runs = [(coarser_scene(scene, COARSER**power), folder / name) for power, name in levels]
         self.begun: list[tuple[Scene, Path]] = []
 
-    def __enter__(self) -> _Companions:
-        self._begin(self.runs if self.enough is None else self.runs[:1])
+    def __enter__(self) -> _CoarserRuns:
+        self._begin(self.runs if self.requested is None else self.runs[:1])
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -230,43 +233,44 @@ class _Companions:
 
     def _begin(self, runs: list[tuple[Scene, Path]]) -> None:
         """Start the runs without a file; with laws defined in a script they run later, in this process."""
-        if of_modules(self.scene) and any(left_by(*run) is None for run in runs):
+        if of_modules(self.scene) and any(read_coarser_run(*run) is None for run in runs):
             self.worker = self.worker or Worker(__name__)
-            self.worker.do(_leave, runs)
+            self.worker.do(_run_coarser, runs)
             self.begun += runs
 
-    def first(self, folder: Path, kept: KeptSections) -> None:
+    def draw_section(self, folder: Path, kept: KeptSections) -> None:
         """Let the worker draw the section after its runs; without a worker it is drawn with the other figures."""
         if self.worker is not None:
-            self.worker.do(HERE.first, folder, kept)
+            self.worker.do(LOCAL.draw_section, folder, kept)
 
-    def rest(self, folder: Path) -> None:
+    def draw_all(self, folder: Path) -> None:
         """Draw the figures of the run, half of them in the worker if its runs are finished."""
-        if self.worker is not None and self.worker.alive and all(left_by(*run) is not None for run in self.begun):
-            self.worker.do(HERE.rest, folder, (0, 2))
-            HERE.rest(folder, (1, 2))
+        done = all(read_coarser_run(*run) is not None for run in self.begun)
+        if self.worker is not None and self.worker.alive and done:
+            self.worker.do(LOCAL.draw_all, folder, (0, 2))
+            LOCAL.draw_all(folder, (1, 2))
             if self.worker.did():
                 return
-        HERE.rest(folder)  # raises the error that the worker had
+        LOCAL.draw_all(folder)  # raises the error that the worker had
 
     def state(self, recorder: Recorder, summary: dict[str, Any]) -> None:
         """Wait for the coarser runs, and write the error estimates into the summary."""
-        other = self._left(*self.runs[0])
+        other = self._wait_for(*self.runs[0])
         if "gave up" in other:
             why = f"the coarser run gave up: {other['gave up']}"
             summary["warnings"].append(f"{why}; the error of the mesh is not known")
             return
-        embedded, mine = summary["error estimates"], reading(recorder.rows)
-        ratio = coarser_by(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
-        known = stated(self.scene, embedded, mine, other["reading"], ratio=ratio)
+        embedded, mine = summary["error estimates"], quantities(recorder.rows)
+        ratio = edge_ratio(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
+        known = combined_errors(self.scene, embedded, mine, other["reading"], ratio=ratio)
         left = [(other, "companion")]
-        if self.enough is None or excess(known, self.enough) > 1:
+        if self.requested is None or largest_ratio(known, self.requested) > 1:
             self._begin(self.runs[1:])
-            coarsest = self._left(*self.runs[1])
+            coarsest = self._wait_for(*self.runs[1])
             if "gave up" in coarsest:
                 why = f"the coarsest run gave up: {coarsest['gave up']}"
                 summary["warnings"].append(f"{why}; first order is assumed for the error of the mesh")
-            known = stated(self.scene, embedded, mine, other["reading"], coarsest.get("reading"), ratio=ratio)
+            known = combined_errors(self.scene, embedded, mine, other["reading"], coarsest.get("reading"), ratio=ratio)
             left.append((coarsest, "coarsest companion"))
         summary["error estimates"] = known
         for found, name in left:
@@ -274,16 +278,18 @@ class _Companions:
                 if cost in found:
                     summary[f"{cost} of the {name}{unit}"] = found[cost]
 
-    def _left(self, scene: Scene, file: Path) -> dict[str, Any]:
+    def _wait_for(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for the file of one of the runs; return its contents."""
         if not of_modules(self.scene):
-            _leave([(scene, file)])
-        while left_by(scene, file) is None and self.worker is not None and self.worker.alive and not self.worker.idle:
+            _run_coarser([(scene, file)])
+        while read_coarser_run(scene, file) is None:
+            if self.worker is None or not self.worker.alive or self.worker.idle:
+                break
             time.sleep(POLL)
-        return left_by(scene, file) or {"gave up": "its process ended without a result"}
+        return read_coarser_run(scene, file) or {"gave up": "its process ended without a result"}
 
 
-def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
+def read_coarser_run(scene: Scene, file: Path) -> dict[str, Any] | None:
     """Contents of a coarser run's file; None if there is none, or it belongs to another scene."""
     try:
         left = json.loads(file.read_text(encoding="utf-8"))
@@ -292,27 +298,27 @@ def left_by(scene: Scene, file: Path) -> dict[str, Any] | None:
     return left if isinstance(left, dict) and left.get("scene") == fingerprint(scene) else None
 
 
-def left_of(result: Result) -> dict[str, Any]:
+def coarser_run_data(result: Result) -> dict[str, Any]:
     """Data of a completed run for its use as a coarser run: quantities of interest, element edge, and cost."""
     rows = result.records.rows
-    read = {"reading": reading(rows), "element edge [mm]": element_edge(rows)}
+    read = {"reading": quantities(rows), "element edge [mm]": element_edge(rows)}
     return read | {cost: result.summary[cost + unit] for cost, unit in COSTS}
 
 
-def _leave(runs: list[tuple[Scene, Path]]) -> None:
+def _run_coarser(runs: list[tuple[Scene, Path]]) -> None:
     """Run the scenes without a file; write the data, or the reason of the failure, to their files."""
     for scene, file in runs:
-        if left_by(scene, file) is not None:
+        if read_coarser_run(scene, file) is not None:
             continue
         left: dict[str, Any] = {}
         try:
-            left |= left_of(run_scene(scene, figures=False))
+            left |= coarser_run_data(run_scene(scene, figures=False))
         except NgwearError as error:
             left["gave up"] = str(error)
-        leave(scene, file, left)
+        write_coarser_run(scene, file, left)
 
 
-def leave(scene: Scene, file: Path, left: dict[str, Any]) -> None:
+def write_coarser_run(scene: Scene, file: Path, left: dict[str, Any]) -> None:
     """Write the data of a coarser run to its file, which is replaced as a whole."""
     begun = file.with_name(f".{file.name}.{os.getpid()}")
     begun.write_text(json.dumps({"scene": fingerprint(scene)} | left, indent=2))

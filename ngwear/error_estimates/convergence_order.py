@@ -29,16 +29,16 @@ def observed_order(values: Sequence[float], results: Sequence[float]) -> float |
         return None
     wanted = first / second
 
-    def excess(p: float) -> float:
+    def residual(p: float) -> float:
         """Residual of the equation above; increases with p."""
         return ((a / b) ** p - 1) / (1 - (c / b) ** p) - wanted
 
     low, high = LOWEST, HIGHEST
-    if excess(low) > 0 or excess(high) < 0:
+    if residual(low) > 0 or residual(high) < 0:
         return None
     for _ in range(RATIO_BITS):
         middle = 0.5 * (low + high)
-        low, high = (low, middle) if excess(middle) > 0 else (middle, high)
+        low, high = (low, middle) if residual(middle) > 0 else (middle, high)
     return 0.5 * (low + high)
 
 

@@ -16,9 +16,9 @@ from ngwear.error_estimates.cost_runs import DEPTH, PEAK, Limited, Point, measur
 from ngwear.error_estimates.cost_study import Study
 from ngwear.error_estimates.cost_table import as_dict, table
 from ngwear.error_estimates.cost_text import paragraph
-from ngwear.error_estimates.ladder import STOPPED, Measurement, Setting, told
-from ngwear.error_estimates.settings import Knob, at, changes, knobs
-from ngwear.error_estimates.settings_search import Choice, climb, confirm
+from ngwear.error_estimates.ladder import STOPPED, Measurement, Setting, labels_of
+from ngwear.error_estimates.settings import Parameter, changes, parameters, with_setting
+from ngwear.error_estimates.settings_search import Choice, confirm, run_ladders
 from ngwear.errors import SceneError
 from ngwear.files.result_folder import GAVE_UP, OutFolder
 from ngwear.files.version import VERSION
@@ -118,17 +118,17 @@ def cost(
     if isinstance(scene, Scene) and scene.fluid is not None:
         scene = replace(scene, fluid=replace(scene.fluid, leak_pressure=True))
     if isinstance(scene, Scene) and scene.accuracy.error is not None:  # the study itself finds settings for an error
-        scene = replace(scene, accuracy=scene.accuracy.given(Accuracy.engineering()))
-    chosen = knobs(scene)
-    ladders = tuple(knob.ladder for knob in chosen)
+        scene = replace(scene, accuracy=scene.accuracy.with_tolerances_of(Accuracy.engineering()))
+    varied = parameters(scene)
+    ladders = tuple(parameter.ladder for parameter in varied)
     main = DEPTH if isinstance(scene, PinScene) or scene.worn_edges else PEAK
     out = None if folder is None else OutFolder(Path(folder), "", resume=True)
     keep = tempfile.TemporaryDirectory() if out is None else nullcontext(out.path)
     with keep as path, _Bar(budget, shown=progress) as bar:
-        run = _runner(scene, chosen, Path(path) / RUNS, bar.begin, bar.end)
-        study = climb(ladders, main, budget, run)
+        run = _runner(scene, varied, Path(path) / RUNS, bar.begin, bar.end)
+        study = run_ladders(ladders, main, budget, run)
         choices = confirm(study, budget, run)
-    written = [None if c.setting is None else changes(scene, at(scene, chosen, c.setting)) for c in choices]
+    written = [None if c.setting is None else changes(scene, with_setting(scene, varied, c.setting)) for c in choices]
     found = Cost(scene.name, budget, study, choices, written)
     if out is not None:
         _write(out, found, figures=figures)
@@ -137,7 +137,7 @@ def cost(
 
 def _runner(
     scene: Scene | PinScene,
-    chosen: tuple[Knob, ...],
+    varied: tuple[Parameter, ...],
     folder: Path,
     begin: Callable[[str], None],
     end: Callable[[float], None],
@@ -147,17 +147,17 @@ def _runner(
         scene = replace(
             scene, part=replace(scene.part, outline=replace(scene.part.outline))
         )  # a copy without cached values, which would change the digest
-    ladders = tuple(knob.ladder for knob in chosen)
+    ladders = tuple(parameter.ladder for parameter in varied)
 
     def run(setting: Setting, left: float) -> Measurement:
-        begin(", ".join(told(ladders, setting).values()))
+        begin(", ".join(labels_of(ladders, setting).values()))
         try:
-            there = at(scene, chosen, setting)
+            there = with_setting(scene, varied, setting)
         except SceneError as error:
             return Measurement(status=GAVE_UP, message=str(error))
         for attempt in itertools.count():
             found, restored = _measured(Point(there, attempt), left, folder)
-            if not (restored and _worth_another(found, left)):
+            if not (restored and _has_time_now(found, left)):
                 break
         end(found.wall)
         return found
@@ -165,7 +165,7 @@ def _runner(
     return run
 
 
-def _worth_another(found: Measurement, left: float) -> bool:
+def _has_time_now(found: Measurement, left: float) -> bool:
     """Whether a run that was stopped in an earlier call has enough time now."""
     if found.status != STOPPED:
         return False

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from ngwear.error_estimates.cost_study import TARGETS, Study
 from ngwear.error_estimates.cost_table import kind_of
 from ngwear.error_estimates.cost_text import name_of
-from ngwear.error_estimates.ladder import rung_of
+from ngwear.error_estimates.ladder import with_level
 from ngwear.error_estimates.settings_search import Choice
 from ngwear.plots.style import COLOURS
 
@@ -99,20 +99,20 @@ def _mark_targets(axis: Axes, study: Study, choices: Sequence[Choice]) -> None:
 
 def _draw_ladders(axis: Axes, study: Study) -> None:
     for k, ladder in enumerate(study.ladders):
-        rungs = study.rungs(k)
-        if len(rungs) < 2:
+        levels = study.levels(k)
+        if len(levels) < 2:
             continue
-        others = [i for i in rungs if study.rung_error(k, i, study.main)]  # without those equal to the reference
-        x = [rungs[i].cpu for i in others]
-        y = [max(study.rung_error(k, i, study.main) or 0.0, LEAST) for i in others]
+        others = [i for i in levels if study.level_error(k, i, study.main)]  # without those equal to the reference
+        x = [levels[i].cpu for i in others]
+        y = [max(study.level_error(k, i, study.main) or 0.0, LEAST) for i in others]
         order = study.order(k, study.main)
         observed = "" if order is None else f", observed order {order:.1f}"
         colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
-        reference = f"against {ladder.labels[max(rungs)]}{observed}"
+        reference = f"against {ladder.labels[max(levels)]}{observed}"
         axis.loglog(x, y, marker + "-", color=colour, ms=6, lw=1.0, label=f"{ladder.name}, {reference}")
         for n, (i, place) in enumerate(zip(others, zip(x, y, strict=True), strict=True)):
             text = ladder.labels[i].removeprefix("wear_error ").removeprefix("stress_error ")
-            own = i == ladder.own and rung_of(study.base, k, i) in study.runs
+            own = i == ladder.own and with_level(study.base, k, i) in study.runs
             foot, top = n + 1 < len(y) and y[n] < y[n + 1], n > 0 and y[n - 1] < y[n]
             below = foot or (i % 2 == 1 and not top)  # labels must not overlap each other or the line
             axis.annotate(

@@ -71,19 +71,19 @@ class Limited(Executor):
 
     def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         call, sent = functools.partial(function, *args, **kwargs), time.time()
-        told: Future[Any] = Future()
+        outcome: Future[Any] = Future()
 
-        def tell(done: Future[Any]) -> None:
+        def on_done(done: Future[Any]) -> None:
             error, wall = done.exception(), time.time() - sent
             if isinstance(error, BrokenExecutor) and wall > self._seconds:
-                told.set_result(Measurement(status=STOPPED, message=NO_TIME, wall=wall))
+                outcome.set_result(Measurement(status=STOPPED, message=NO_TIME, wall=wall))
             elif error is not None:
-                told.set_exception(error)
+                outcome.set_exception(error)
             else:
-                told.set_result(done.result())
+                outcome.set_result(done.result())
 
-        self._executor.submit(_timed, sent, self._seconds, self._grace, call).add_done_callback(tell)
-        return told
+        self._executor.submit(_timed, sent, self._seconds, self._grace, call).add_done_callback(on_done)
+        return outcome
 
 
 def _timed(sent: float, seconds: float, grace: float, call: Callable[[], Any]) -> Any:

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass, field
 
 from ngwear.error_estimates.convergence_order import observed_order, reference_error, relative
-from ngwear.error_estimates.ladder import Ladder, Measurement, Setting, rung_of
+from ngwear.error_estimates.ladder import Ladder, Measurement, Setting, with_level
 from ngwear.error_estimates.pareto_front import pareto_front, power_law, product_seconds
 
 TARGETS = (0.05, 0.01, 0.001)  # a look, a decision, a reference
@@ -56,14 +56,14 @@ class Study:
         names = dict.fromkeys([self.main] + [name for run in self.runs.values() if run.ok for name in run.values])
         return tuple(names)
 
-    def rungs(self, k: int) -> dict[int, Measurement]:
+    def levels(self, k: int) -> dict[int, Measurement]:
         """Completed runs of a ladder by level, coarse to fine."""
-        found = {i: self.runs.get(rung_of(self.base, k, i)) for i in range(len(self.ladders[k].values))}
+        found = {i: self.runs.get(with_level(self.base, k, i)) for i in range(len(self.ladders[k].values))}
         return {i: run for i, run in found.items() if run is not None and run.ok}
 
     def _series(self, k: int, quantity: str) -> tuple[list[float], list[float]]:
-        rungs = self.rungs(k)
-        return [self.ladders[k].values[i] for i in rungs], [run.values[quantity] for run in rungs.values()]
+        levels = self.levels(k)
+        return [self.ladders[k].values[i] for i in levels], [run.values[quantity] for run in levels.values()]
 
     def order(self, k: int, quantity: str) -> float | None:
         """Observed order of convergence of a quantity in a parameter; None if there is none."""
@@ -75,23 +75,23 @@ class Study:
         found = reference_error(values, results, smooth=self.ladders[k].smooth) if values else None
         return math.inf if found is None else self.ladders[k].remaining * found
 
-    def rung_error(self, k: int, rung: int, quantity: str) -> float | None:
+    def level_error(self, k: int, level: int, quantity: str) -> float | None:
         """Relative difference from the ladder's finest run; None if the level has not been run."""
-        rungs = self.rungs(k)
-        if rung not in rungs:
+        levels = self.levels(k)
+        if level not in levels:
             return None
-        return relative(rungs[rung].values[quantity], rungs[max(rungs)].values[quantity])
+        return relative(levels[level].values[quantity], levels[max(levels)].values[quantity])
 
-    def part(self, k: int, rung: int, quantity: str) -> float:
+    def part(self, k: int, level: int, quantity: str) -> float:
         """Contribution of a parameter's value to the error; infinite if it is not known.
 
         It is at least that of every finer level, because a coarse level may be close to the reference by chance. A
         level finer than all runs has the error of the finest run.
         """
-        rungs = self.rungs(k)
-        if not rungs or (rung < max(rungs) and rung not in rungs):
+        levels = self.levels(k)
+        if not levels or (level < max(levels) and level not in levels):
             return math.inf
-        found = [self.rung_error(k, i, quantity) or 0.0 for i in rungs if i >= rung]
+        found = [self.level_error(k, i, quantity) or 0.0 for i in levels if i >= level]
         return max(found, default=0.0) + self.own_error(k, quantity)
 
     def predicted_error(self, setting: Setting, quantity: str) -> float:
@@ -101,7 +101,7 @@ class Study:
     @property
     def finest(self) -> Setting:
         """Setting with the finest completed level of each ladder; that of the base if a ladder has none."""
-        return tuple(max(self.rungs(k), default=self.base[k]) for k in range(len(self.ladders)))
+        return tuple(max(self.levels(k), default=self.base[k]) for k in range(len(self.ladders)))
 
     def added(self, quantity: str) -> float:
         """Value of the base run plus the corrections by the finest run of each ladder; nan without the base run."""
@@ -109,7 +109,7 @@ class Study:
         if base is None or not base.ok:
             return math.nan
         value = base.values[quantity]
-        return value + sum(list(self.rungs(k).values())[-1].values[quantity] - value for k in range(len(self.ladders)))
+        return value + sum(list(self.levels(k).values())[-1].values[quantity] - value for k in range(len(self.ladders)))
 
     def best(self, quantity: str) -> float:
         """Value of the run at ``finest``; without that run, ``added``."""
@@ -129,36 +129,36 @@ class Study:
         if run is not None and run.ok:
             return run.wall if wall else run.cpu
         each = [
-            {i: run.wall if wall else run.cpu for i, run in self.rungs(k).items()} for k in range(len(self.ladders))
+            {i: run.wall if wall else run.cpu for i, run in self.levels(k).items()} for k in range(len(self.ladders))
         ]
         return product_seconds(self.base, each, setting)
 
-    def next_seconds(self, k: int, rung: int) -> float:
+    def next_seconds(self, k: int, level: int) -> float:
         """Predicted wall time of a level that has not been run [s]; nan without any run of the ladder."""
-        ladder, rungs = self.ladders[k], self.rungs(k)
+        ladder, levels = self.ladders[k], self.levels(k)
         base = self.runs.get(self.base)
-        if not rungs:
+        if not levels:
             return base.wall if base is not None and base.ok else math.nan
-        last = rungs[max(rungs)]
-        if rung < max(rungs):
-            return rungs[min(i for i in rungs if i > rung)].wall
-        if ladder.values[rung] == 0:
+        last = levels[max(levels)]
+        if level < max(levels):
+            return levels[min(i for i in levels if i > level)].wall
+        if ladder.values[level] == 0:
             return last.wall * max(1.0, ladder.most_solves / max(last.solves, 1))
-        values, walls = [ladder.values[i] for i in rungs], [run.wall for run in rungs.values()]
+        values, walls = [ladder.values[i] for i in levels], [run.wall for run in levels.values()]
         most = last.wall * max(1.0, ladder.most_solves / max(last.solves, 1)) if ladder.most_solves else math.inf
-        return power_law(values, walls, ladder.values[rung], ladder.growth, most)
+        return power_law(values, walls, ladder.values[level], ladder.cost_exponent, most)
 
     def settled(self, k: int) -> bool:
         """Whether no finer level is needed: the finest run, finer than the scene, has a negligible error.
 
         By its estimated error if there is an order, else by the last two changes of the main quantity.
         """
-        rungs = list(self.rungs(k).items())
-        if len(rungs) < 3 or rungs[-1][0] <= self.ladders[k].own:
+        levels = list(self.levels(k).items())
+        if len(levels) < 3 or levels[-1][0] <= self.ladders[k].own:
             return False
         if self.order(k, self.main) is not None:
             return self.own_error(k, self.main) < SETTLED
-        results = [run.values[self.main] for _, run in rungs[-3:]]
+        results = [run.values[self.main] for _, run in levels[-3:]]
         return max(relative(a, results[2]) for a in results[:2]) < SETTLED
 
     def front(self) -> list[Setting]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from ngwear.error_estimates.cost_study import Study
 from ngwear.error_estimates.cost_text import name_of
-from ngwear.error_estimates.ladder import Setting, told
+from ngwear.error_estimates.ladder import Setting, labels_of
 from ngwear.error_estimates.settings_search import Choice
 
 
@@ -58,7 +58,7 @@ def _on_ladder(study: Study, setting: Setting, quantity: str) -> float | str:
     if len(changed) != 1:
         return ""
     k = changed[0]
-    return _known(study.rung_error(k, setting[k], quantity))
+    return _known(study.level_error(k, setting[k], quantity))
 
 
 def as_dict(study: Study, choices: Sequence[Choice]) -> dict[str, Any]:
@@ -68,24 +68,24 @@ def as_dict(study: Study, choices: Sequence[Choice]) -> dict[str, Any]:
         "spent [s]": round(study.spent, 1),
         "ladders": [_ladder(study, k) for k in range(len(study.ladders))],
         "runs": [_run(study, setting) for setting in study.runs],
-        "front": [told(study.ladders, setting) for setting in study.front()],
+        "front": [labels_of(study.ladders, setting) for setting in study.front()],
         "recommended": [_choice(study, choice) for choice in choices],
         "not run": [
-            {"setting": told(study.ladders, s), "wall time, predicted [s]": finite(seconds)}
+            {"setting": labels_of(study.ladders, s), "wall time, predicted [s]": finite(seconds)}
             for s, seconds in study.left_out.items()
         ],
     }
 
 
 def _ladder(study: Study, k: int) -> dict[str, Any]:
-    ladder, rungs = study.ladders[k], study.rungs(k)
+    ladder, levels = study.ladders[k], study.levels(k)
     return {
         "name": ladder.name,
         "column": ladder.column,
         "the scene's": ladder.labels[ladder.own],
-        "reference": ladder.labels[max(rungs)] if rungs else None,
+        "reference": ladder.labels[max(levels)] if levels else None,
         "errors against the reference [-]": {
-            quantity: {ladder.labels[i]: finite(study.rung_error(k, i, quantity)) for i in rungs}
+            quantity: {ladder.labels[i]: finite(study.level_error(k, i, quantity)) for i in levels}
             for quantity in study.quantities
         },
         "estimated error of the reference [-]": {q: finite(study.own_error(k, q)) for q in study.quantities},
@@ -97,7 +97,7 @@ def _run(study: Study, setting: Setting) -> dict[str, Any]:
     run = study.runs[setting]
     return {
         "ladder": kind_of(study, setting),
-        "setting": told(study.ladders, setting),
+        "setting": labels_of(study.ladders, setting),
         "status": run.status,
         "message": run.message,
         "CPU time [s]": round(run.cpu, 3),
@@ -115,7 +115,7 @@ def _choice(study: Study, choice: Choice) -> dict[str, Any]:
     error = study.error if choice.measured else study.predicted_error
     return {
         "target [-]": choice.target,
-        "setting": told(study.ladders, choice.setting),
+        "setting": labels_of(study.ladders, choice.setting),
         "values": {ladder.column: ladder.values[i] for ladder, i in zip(study.ladders, choice.setting, strict=True)},
         "answer": "measured" if choice.measured else "predicted from the ladders, not run",
         "CPU time [s]": round(study.seconds(choice.setting), 3),

@@ -37,9 +37,9 @@ def change_in_words(study: Study, setting: Setting) -> str:
     return ", ".join(words) + ("" if len(changed) == len(own) else ", the rest as given")
 
 
-def _labelled(ladder: Ladder, rung: int) -> str:
+def _labelled(ladder: Ladder, level: int) -> str:
     """A value of a parameter as text, such as ``element edge 0.05 mm`` or ``stress_error 0.1``."""
-    label = ladder.labels[rung]
+    label = ladder.labels[level]
     return f"{ladder.name} {label}" if label[0].isdigit() and "arm" not in label else label
 
 
@@ -49,7 +49,7 @@ def paragraph(scene: str, study: Study, choices: Sequence[Choice], budget: float
     done = sum(run.ok for run in runs)
     parts = [f"{scene}: {done} run{'' if done == 1 else 's'} took {study.spent:.0f} s of the {budget:g} s given."]
     parts.append(_own(study))
-    if study.base != study.own and any(len(study.rungs(k)) > 1 for k in range(1, len(study.ladders))):
+    if study.base != study.own and any(len(study.levels(k)) > 1 for k in range(1, len(study.ladders))):
         parts.append(
             f"To save time the other parameters were varied with {_labelled(study.ladders[0], study.base[0])}."
         )

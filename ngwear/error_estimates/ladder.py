@@ -43,7 +43,7 @@ class Ladder:
     values: tuple[float, ...]
     labels: tuple[str, ...]
     own: int
-    growth: float
+    cost_exponent: float
     most_solves: int = 0
     smooth: bool = True
     remaining: float = 1.0
@@ -85,11 +85,11 @@ class Measurement:
         return self.status == COMPLETED
 
 
-def rung_of(base: Setting, ladder: int, rung: int) -> Setting:
+def with_level(base: Setting, ladder: int, level: int) -> Setting:
     """The base setting with another level on one ladder."""
-    return (*base[:ladder], rung, *base[ladder + 1 :])
+    return (*base[:ladder], level, *base[ladder + 1 :])
 
 
-def told(ladders: tuple[Ladder, ...], setting: Setting) -> dict[str, str]:
+def labels_of(ladders: tuple[Ladder, ...], setting: Setting) -> dict[str, str]:
     """Labels of a setting by the names of the ladders."""
     return {ladder.name: ladder.labels[i] for ladder, i in zip(ladders, setting, strict=True)}

@@ -23,7 +23,7 @@ def pareto_front(points: Iterable[tuple[float, float]]) -> list[int]:
 
 def cheapest(
     target: float,
-    rungs: Sequence[Iterable[int]],
+    levels: Sequence[Iterable[int]],
     error: Callable[[Setting], float],
     seconds: Callable[[Setting], float],
     unfit: Iterable[Setting] = (),
@@ -37,7 +37,7 @@ def cheapest(
     Parameters
     ----------
     target : float
-    rungs : sequence of iterable of int
+    levels : sequence of iterable of int
         Known levels of each ladder.
     error, seconds : callable
         Predicted error and time of a setting.
@@ -47,7 +47,7 @@ def cheapest(
         Setting of the scene.
     """
     refused = set(unfit)
-    fit = [s for s in itertools.product(*rungs) if s not in refused and error(s) <= target]
+    fit = [s for s in itertools.product(*levels) if s not in refused and error(s) <= target]
     times = {s: seconds(s) for s in fit}
     fast = [s for s in fit if times[s] <= (1 + ALIKE) * min(times.values())]
     return min(fast, key=lambda s: (sum(a != b for a, b in zip(s, own, strict=False)), error(s)), default=None)
@@ -56,21 +56,21 @@ def cheapest(
 def product_seconds(base: Setting, rung_seconds: Sequence[Mapping[int, float]], setting: Setting) -> float:
     """Predicted seconds of a setting: those of the base times the factor measured on each ladder."""
     out = rung_seconds[0][base[0]]
-    for k, rung in enumerate(setting):
-        out *= rung_seconds[k][rung] / rung_seconds[k][base[k]]
+    for k, level in enumerate(setting):
+        out *= rung_seconds[k][level] / rung_seconds[k][base[k]]
     return out
 
 
 def power_law(
-    values: Sequence[float], seconds: Sequence[float], wanted: float, growth: float, highest: float = math.inf
+    values: Sequence[float], seconds: Sequence[float], wanted: float, cost_exponent: float, highest: float = math.inf
 ) -> float:
     """Predicted seconds of the next finer value: ``t ~ value^-p``.
 
-    p is measured from the two finest runs, but at least ``growth`` and at most 3; ``growth`` with a single run. Fixed
-    costs make p of coarse runs too small for finer ones.
+    p is measured from the two finest runs, but at least ``cost_exponent`` and at most 3; with a single run it is
+    ``cost_exponent``. Fixed costs make p of coarse runs too small for finer ones.
     """
-    p = growth
+    p = cost_exponent
     if len(values) > 1 and values[-2] > values[-1] > 0:
         p = math.log(seconds[-1] / seconds[-2]) / math.log(values[-2] / values[-1])
-        p = min(max(p, growth), 3.0)
+        p = min(max(p, cost_exponent), 3.0)
     return min(seconds[-1] * (values[-1] / wanted) ** p, highest)

@@ -114,9 +114,9 @@ def run(
                 scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps, worker=worker
             )
         else:
-            from ngwear.error_estimates.coarser_runs import run_stated
+            from ngwear.error_estimates.coarser_runs import run_with_coarser_runs
 
-            result = run_stated(
+            result = run_with_coarser_runs(
                 scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps, worker=worker
             )
         return result if keeps else replace(result, folder=None)
@@ -142,7 +142,7 @@ def with_accuracy(scene: Scene | PinScene, accuracy: str | float | Accuracy | No
         raise
     except (ValueError, TypeError):
         raise SceneError("accuracy", accuracy, f"must be one of {list(PRESETS)}, or a number below 1") from None
-    return replace(scene, accuracy=scene.accuracy.given(new))
+    return replace(scene, accuracy=scene.accuracy.with_tolerances_of(new))
 
 
 def read_result(folder: Path | str) -> Result | PinResult:

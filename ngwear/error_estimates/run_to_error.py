@@ -24,12 +24,12 @@ from ngwear.error_estimates.coarser_runs import (
     COARSER,
     COARSEST,
     FILE,
-    coarser,
-    excess,
-    leave,
-    left_by,
-    left_of,
-    run_stated,
+    coarser_run_data,
+    coarser_scene,
+    largest_ratio,
+    read_coarser_run,
+    run_with_coarser_runs,
+    write_coarser_run,
 )
 from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, COMPLETED, OutFolder
@@ -64,14 +64,14 @@ def first_across(error: float, peak_error: float | None = None) -> float:
     return min(max(across, COARSEST_FIRST), FINEST_FIRST)
 
 
-def next_across(across: float, stated: float | None, error: float) -> float | None:
+def next_across(across: float, estimated: float | None, error: float) -> float | None:
     """Elements across of the next level; None if this level is accurate enough, or there is no finer one.
 
     First order is assumed. The next level has at most four times as many elements, and twice if the error is not known.
     """
-    if stated is not None and stated <= error:
+    if estimated is not None and estimated <= error:
         return None
-    steps = 1 if stated is None else min(MOST_STEPS, math.ceil(math.log2(stated / error) - 1e-9))
+    steps = 1 if estimated is None else min(MOST_STEPS, math.ceil(math.log2(estimated / error) - 1e-9))
     while steps and across * COARSER**steps > MOST_ACROSS:
         steps -= 1
     return across * COARSER**steps if steps else None
@@ -85,20 +85,20 @@ def next_parts(parts: int, by_time_step: float, error: float) -> int:
 
 
 def next_level(
-    level: Level, stated: float | None, by_time_step: float, error: float, *, others: float = 0.0
+    level: Level, estimated: float | None, by_time_step: float, error: float, *, others: float = 0.0
 ) -> Level | None:
     """Elements across and parts of a stroke of the next level; None if this one is accurate enough or the finest.
 
     ``others`` is the largest ratio of another estimated error to the requested one [-].
     """
     across, parts = level
-    if stated is not None and stated <= error and others <= 1:
+    if estimated is not None and estimated <= error and others <= 1:
         return None
-    if stated is None:
+    if estimated is None:
         finer = (next_across(across, None, error) or across, parts)
     else:
         left = error - min(by_time_step, 0.5 * error)
-        by_mesh = max(stated - by_time_step, others * left)
+        by_mesh = max(estimated - by_time_step, others * left)
         finer = (next_across(across, by_mesh, left) or across, next_parts(parts, by_time_step, error))
     return None if finer == level else finer
 
@@ -120,36 +120,36 @@ def run_to_error(
 
     Parameters and errors as ``ngwear.loop.run.run``; the coarser runs of the first level use ``worker``, if given.
     """
-    folder, asked = OutFolder(Path(out), CHECKPOINT, resume=resume), asked_for(scene)
-    done = _earlier(folder, scene, resume=resume)
+    folder, asked = OutFolder(Path(out), CHECKPOINT, resume=resume), requested_errors(scene)
+    done = _earlier_levels(folder, scene, resume=resume)
     first = (first_across(asked[DEPTH], asked.get(PEAK)), scene.accuracy.parts)
-    at = (_after(done[-1], asked) if done else None) or first
+    at = (_next_level(done[-1], asked) if done else None) or first
     while True:
         level = at_level(scene, *at)
-        _hand_down(folder, level, done)
-        told = _Told(done, at, asked)
-        result = run_stated(
+        _reuse_levels(folder, level, done)
+        level_summary = _LevelSummary(done, at, asked)
+        result = run_with_coarser_runs(
             level,
             out=out,
             resume=resume,
             progress=progress,
             throw=throw,
             figures=figures,
-            told=told,
-            enough=asked,
+            on_summary=level_summary,
+            requested=asked,
             worker=worker,
         )
         worker = None
-        finer = _after(told.mine, asked) if result.status == COMPLETED else None
+        finer = _next_level(level_summary.mine, asked) if result.status == COMPLETED else None
         if finer is None:
             return result
-        done.append(told.mine | {"left": left_of(result)})
-        _note(folder, scene, done)
-        _put_away(folder, told.mine)
+        done.append(level_summary.mine | {"left": coarser_run_data(result)})
+        _write_notes(folder, scene, done)
+        _move_files(folder, level_summary.mine)
         at = finer
 
 
-def _note(folder: OutFolder, scene: Scene, done: list[dict[str, Any]]) -> None:
+def _write_notes(folder: OutFolder, scene: Scene, done: list[dict[str, Any]]) -> None:
     notes = json.dumps({"scene": fingerprint(scene), "levels": done}).encode()
     folder.replace(NOTES, lambda file: file.write(notes))
 
@@ -159,20 +159,20 @@ def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy.with_across(across), parts=parts))
 
 
-def asked_for(scene: Scene) -> dict[str, float]:
+def requested_errors(scene: Scene) -> dict[str, float]:
     """Errors that a scene requests, by their names in the summary."""
     accuracy = scene.accuracy
     asked = {DEPTH: accuracy.error, PEAK: accuracy.peak_error}
     return {name: error for name, error in asked.items() if error is not None}
 
 
-def _after(done: Mapping[str, Any], asked: Mapping[str, float]) -> Level | None:
+def _next_level(done: Mapping[str, Any], asked: Mapping[str, float]) -> Level | None:
     others = {name: limit for name, limit in asked.items() if name != DEPTH}
-    over = excess({name: done[name] for name in others if done.get(name) is not None}, others)
+    over = largest_ratio({name: done[name] for name in others if done.get(name) is not None}, others)
     return next_level((done[ACROSS], done[PARTS]), done[DEPTH], done[BY_TIME], asked[DEPTH], others=over)
 
 
-class _Told:
+class _LevelSummary:
     """Adds to a level's summary the requested errors and a table of all levels."""
 
     def __init__(self, done: list[dict[str, Any]], level: Level, asked: Mapping[str, float]) -> None:
@@ -180,36 +180,36 @@ class _Told:
         self.mine: dict[str, Any] = {}
 
     def __call__(self, summary: dict[str, Any]) -> None:
-        stated = summary["error estimates"]
-        known = any(name.startswith(f"{DEPTH[:-4]} by mesh") for name in stated)
+        estimated = summary["error estimates"]
+        known = any(name.startswith(f"{DEPTH[:-4]} by mesh") for name in estimated)
         run = {(entry[ACROSS], entry[PARTS]) for entry in self.done}
         across, parts = self.level
         cpu = summary[CPU]
         for power, name in ((1, "companion"), (2, "coarsest companion")):
             if (across / COARSER**power, parts) not in run:
                 cpu += summary.get(f"CPU time of the {name} [s]", 0.0)
-        self.mine = {ACROSS: across, PARTS: parts, DEPTH: stated[DEPTH] if known else None, CPU: round(cpu, 3)}
-        self.mine[BY_TIME] = stated.get(BY_TIME, 0.0)
+        self.mine = {ACROSS: across, PARTS: parts, DEPTH: estimated[DEPTH] if known else None, CPU: round(cpu, 3)}
+        self.mine[BY_TIME] = estimated.get(BY_TIME, 0.0)
         if PEAK in self.asked:
-            self.mine[PEAK] = stated.get(PEAK)
-        told = (ACROSS, PARTS, *self.asked, CPU)
-        levels = [{name: entry[name] for name in told} for entry in (*self.done, self.mine)]
+            self.mine[PEAK] = estimated.get(PEAK)
+        columns = (ACROSS, PARTS, *self.asked, CPU)
+        levels = [{name: entry[name] for name in columns} for entry in (*self.done, self.mine)]
         summary["error asked for [-]"], summary["levels"] = self.asked[DEPTH], levels
         if PEAK in self.asked:
             summary["peak error asked for [-]"] = self.asked[PEAK]
         summary["CPU time of all levels [s]"] = round(sum(entry[CPU] for entry in levels), 3)
-        if _after(self.mine, self.asked) is not None:
+        if _next_level(self.mine, self.asked) is not None:
             return
         for name, limit in self.asked.items():
-            if known and name in stated and stated[name] > limit:
-                says = f"has an error of the {name[:-4]} of {stated[name]:.2g}"
+            if known and name in estimated and estimated[name] > limit:
+                says = f"has an error of the {name[:-4]} of {estimated[name]:.2g}"
                 summary["warnings"].append(f"the finest level {says}; {limit:.2g} was asked for")
         if not known:
             says = f"has no error estimate; {self.asked[DEPTH]:.2g} of the {DEPTH[:-4]} was asked for"
             summary["warnings"].append(f"the finest level {says}")
 
 
-def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:
+def _earlier_levels(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:
     """Data of the levels that an earlier process has completed."""
     file = folder.path / NOTES
     if not resume or not file.exists():
@@ -227,19 +227,19 @@ def _earlier(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str,
         raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
     if of != fingerprint(scene):
         raise ResultError(f"{folder.path} holds a run of another scene, or the scene was changed: give another folder")
-    _put_away(folder, levels[-1])
+    _move_files(folder, levels[-1])
     return levels
 
 
-def _place(folder: OutFolder, level: Mapping[str, Any]) -> Path:
+def _level_folder(folder: OutFolder, level: Mapping[str, Any]) -> Path:
     """Folder of a level's files."""
     parts = "" if level[PARTS] == 1 else f" in {level[PARTS]} parts"
     return folder.path / LEVELS / f"{level[ACROSS]:g}{parts}"
 
 
-def _put_away(folder: OutFolder, level: Mapping[str, Any]) -> None:
+def _move_files(folder: OutFolder, level: Mapping[str, Any]) -> None:
     """Move a level's files to its own folder, the checkpoint last, so that an interrupted move can be continued."""
-    place = _place(folder, level)
+    place = _level_folder(folder, level)
     if (place / CHECKPOINT).exists():
         return
     place.mkdir(parents=True, exist_ok=True)
@@ -248,14 +248,14 @@ def _put_away(folder: OutFolder, level: Mapping[str, Any]) -> None:
         file.replace(place / file.name)
 
 
-def _hand_down(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> None:
+def _reuse_levels(folder: OutFolder, level: Scene, done: list[dict[str, Any]]) -> None:
     """Use the data of earlier levels and of their coarser runs as the coarser runs of a level."""
     for power, name in ((1, FILE), (2, COARSEST)):
-        companion = coarser(level, COARSER**power)
+        coarse = coarser_scene(level, COARSER**power)
         for entry in done:
-            if (entry[ACROSS], entry[PARTS]) == (companion.accuracy.across, companion.accuracy.parts):
-                leave(companion, folder.path / name, entry["left"])
+            if (entry[ACROSS], entry[PARTS]) == (coarse.accuracy.across, coarse.accuracy.parts):
+                write_coarser_run(coarse, folder.path / name, entry["left"])
             for file in (FILE, COARSEST):
-                earlier = _place(folder, entry) / file
-                if left_by(companion, earlier) is not None:
+                earlier = _level_folder(folder, entry) / file
+                if read_coarser_run(coarse, earlier) is not None:
                     shutil.copy(earlier, folder.path / name)

@@ -27,14 +27,14 @@ AnyScene = Scene | PinScene
 
 
 @dataclass(frozen=True)
-class Knob:
+class Parameter:
     """A ladder, and the function that sets one of its values in a scene."""
 
     ladder: Ladder
     apply: Callable[[Any, float], Any]
 
 
-def knobs(scene: AnyScene) -> tuple[Knob, ...]:
+def parameters(scene: AnyScene) -> tuple[Parameter, ...]:
     """Parameters that influence the error of the scene, the mesh first.
 
     Load increments are not among them. In full sliding the equilibrium does not depend on the load path; with stick and
@@ -42,7 +42,7 @@ def knobs(scene: AnyScene) -> tuple[Knob, ...]:
     (``tests/unit/error_estimates/test_cost_runs.py``, slow). Only memory has a time step.
     """
     if isinstance(scene, PinScene):
-        return _pin_knobs(scene)
+        return _pin_parameters(scene)
     found = [_mesh(scene)]
     if scene.worn_edges and scene.program.strokes > 2 * len(scene.program.cycle):
         found.append(_jumps(scene))
@@ -56,7 +56,7 @@ def knobs(scene: AnyScene) -> tuple[Knob, ...]:
     return tuple(found)
 
 
-def at(scene: AnyScene, chosen: Sequence[Knob], setting: Setting) -> Any:
+def with_setting(scene: AnyScene, varied: Sequence[Parameter], setting: Setting) -> Any:
     """The scene with a setting.
 
     Raises
@@ -64,9 +64,9 @@ def at(scene: AnyScene, chosen: Sequence[Knob], setting: Setting) -> Any:
     SceneError
         If the scene cannot have it.
     """
-    for knob, rung in zip(chosen, setting, strict=True):
-        if rung != knob.ladder.own:
-            scene = knob.apply(scene, knob.ladder.values[rung])
+    for parameter, level in zip(varied, setting, strict=True):
+        if level != parameter.ladder.own:
+            scene = parameter.apply(scene, parameter.ladder.values[level])
     return scene
 
 
@@ -86,7 +86,7 @@ def _scaled(
     column: str,
     own: float,
     factors: Sequence[float],
-    growth: float,
+    cost_exponent: float,
     *,
     unit: str = "",
     below: float = float("inf"),
@@ -100,17 +100,17 @@ def _scaled(
         values=tuple(values),
         labels=tuple(f"{value:.4g}{unit}" for value in values),
         own=values.index(own),
-        growth=growth,
+        cost_exponent=cost_exponent,
         smooth=smooth,
     )
 
 
-def _mesh(scene: Scene) -> Knob:
+def _mesh(scene: Scene) -> Parameter:
     """All element edges times one factor; those of the mounting mesh only as far as necessary."""
     if scene.accuracy.across is not None:
         ladder = _scaled("element edge", "element edge over contact width [-]", 1 / scene.accuracy.across, MESH, 1.2)
         ladder = replace(ladder, labels=tuple(f"{1 / value:.3g} elements across" for value in ladder.values))
-        return Knob(ladder, lambda scene, edge: replace(scene, accuracy=replace(scene.accuracy, across=1 / edge)))
+        return Parameter(ladder, lambda scene, edge: replace(scene, accuracy=replace(scene.accuracy, across=1 / edge)))
     ladder = _scaled("element edge", "element edge [mm]", scene.accuracy.lengths.patch, MESH, 1.2, unit=" mm")
 
     def apply(scene: Scene, patch: float) -> Scene:
@@ -118,10 +118,10 @@ def _mesh(scene: Scene) -> Knob:
         coarse, mounting = old.coarse * patch / old.patch, max(old.mounting, patch)
         return replace(scene, accuracy=replace(scene.accuracy, patch=patch, coarse=coarse, mounting=mounting))
 
-    return Knob(ladder, apply)
+    return Parameter(ladder, apply)
 
 
-def _jumps(scene: Scene) -> Knob:
+def _jumps(scene: Scene) -> Parameter:
     """Tolerances of the cycle jump; the last value solves each stroke."""
     each = scene.wear.step == "each"
     start = EACH_BEGINS if each else scene.accuracy.tolerances.wear_error
@@ -132,7 +132,7 @@ def _jumps(scene: Scene) -> Knob:
         values=tuple(values),
         labels=(*(f"wear_error {value:.4g}" for value in values[:-1]), "each stroke solved"),
         own=len(values) - 1 if each else values.index(start),
-        growth=0.5,
+        cost_exponent=0.5,
         most_solves=scene.program.strokes,
     )
 
@@ -145,17 +145,17 @@ def _jumps(scene: Scene) -> Knob:
         accuracy = replace(scene.accuracy, wear_error=error, longest_jump=None, depth_error=depth)
         return replace(scene, wear=wear, accuracy=accuracy)
 
-    return Knob(ladder, apply)
+    return Parameter(ladder, apply)
 
 
-def _stress(scene: Scene) -> Knob:
+def _stress(scene: Scene) -> Parameter:
     own = scene.accuracy.tolerances.stress_error
     ladder = _scaled("stress criterion", "accuracy.stress_error [-]", own, STRESS, 0.3, below=1.0)
     ladder = replace(ladder, labels=tuple(f"stress_error {label}" for label in ladder.labels))
-    return Knob(ladder, lambda scene, error: replace(scene, accuracy=replace(scene.accuracy, stress_error=error)))
+    return Parameter(ladder, lambda scene, error: replace(scene, accuracy=replace(scene.accuracy, stress_error=error)))
 
 
-def _orders(scene: Scene) -> list[Knob]:
+def _orders(scene: Scene) -> list[Parameter]:
     """Element orders, on about the same mesh; the value is one over the order.
 
     If order m has a stress error of e on a mesh, order k has about e^(k/m): so ``stress_error`` is changed with the
@@ -177,7 +177,7 @@ def _orders(scene: Scene) -> list[Knob]:
         values=tuple(1 / order for order in orders),
         labels=tuple(f"order {order}" for order in orders),
         own=orders.index(scene.accuracy.order),
-        growth=1.0,
+        cost_exponent=1.0,
         smooth=False,
         remaining=HIGHER_ORDER,
     )
@@ -187,10 +187,10 @@ def _orders(scene: Scene) -> list[Knob]:
         error = old.tolerances.stress_error ** (order / old.order)
         return replace(scene, accuracy=replace(old, order=order, stress_error=error))
 
-    return [Knob(ladder, apply)]
+    return [Parameter(ladder, apply)]
 
 
-def _time_step(scene: Scene) -> Knob:
+def _time_step(scene: Scene) -> Parameter:
     """Parts of a stroke, each with its own solve; the value is one over their number."""
     parts = sorted({*PARTS, scene.accuracy.parts})
     ladder = Ladder(
@@ -199,10 +199,10 @@ def _time_step(scene: Scene) -> Knob:
         values=tuple(1 / n for n in parts),
         labels=tuple(f"{n} part{'' if n == 1 else 's'} a stroke" for n in parts),
         own=parts.index(scene.accuracy.parts),
-        growth=0.9,
+        cost_exponent=0.9,
         smooth=False,
     )
-    return Knob(ladder, lambda s, step: replace(s, accuracy=replace(s.accuracy, parts=round(1 / step))))
+    return Parameter(ladder, lambda s, step: replace(s, accuracy=replace(s.accuracy, parts=round(1 / step))))
 
 
 def _refolded(scene: Scene, tolerance: float) -> Scene:
@@ -214,7 +214,7 @@ def _foldings_of_wear(scene: Scene, tolerance: float) -> list[Folding]:
     return [] if folding is None else [folding]
 
 
-def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: bool = False) -> list[Knob]:
+def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: bool = False) -> list[Parameter]:
     """Values of folding_error that differ in the relaxation times kept, of which at least one if ``needed``."""
     found: dict[tuple[tuple[float, ...], ...], float] = {}
     for tolerance in (own, *FOLDING):
@@ -234,7 +234,7 @@ def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: b
         values=tuple(values),
         labels=tuple(labels),
         own=values.index(own),
-        growth=0.05,
+        cost_exponent=0.05,
         smooth=False,
     )
 
@@ -243,10 +243,10 @@ def _arms(own: float, folded: Callable[[float], Sequence[Folding]], *, needed: b
             return replace(scene, mesh=replace(scene.mesh, folding_error=tolerance))
         return _refolded(scene, tolerance)
 
-    return [Knob(ladder, apply)]
+    return [Parameter(ladder, apply)]
 
 
-def _pin_knobs(scene: PinScene) -> tuple[Knob, ...]:
+def _pin_parameters(scene: PinScene) -> tuple[Parameter, ...]:
     mesh, series = scene.mesh, scene.pin.series
 
     def edges(scene: PinScene, patch: float) -> PinScene:
@@ -257,12 +257,12 @@ def _pin_knobs(scene: PinScene) -> tuple[Knob, ...]:
         return replace(scene, mesh=replace(scene.mesh, reach=reach, beside=mesh.beside * reach / mesh.reach))
 
     found = [
-        Knob(_scaled("element edge", "element edge [mm]", mesh.patch, MESH[1:-1], 2.0, unit=" mm"), edges),
-        Knob(
+        Parameter(_scaled("element edge", "element edge [mm]", mesh.patch, MESH[1:-1], 2.0, unit=" mm"), edges),
+        Parameter(
             _scaled("column of the memory", "column of the memory [mm]", mesh.column, MESH[1:-1], 0.7, unit=" mm"),
             lambda scene, column: replace(scene, mesh=replace(scene.mesh, column=column)),
         ),
-        Knob(_block_ladder(scene), block),
+        Parameter(_block_ladder(scene), block),
     ]
     return (*found, *_arms(mesh.folding_error, lambda t: _foldings(scene, series, t), needed=True))
 
@@ -283,6 +283,6 @@ def _block_ladder(scene: PinScene) -> Ladder:
         values=tuple(1 / r for r in reaches),
         labels=tuple(f"reach {r:.3g}" for r in reaches),
         own=factors.index(1.0),
-        growth=0.7,
+        cost_exponent=0.7,
         smooth=False,
     )

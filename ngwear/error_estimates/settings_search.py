@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from ngwear.error_estimates.cost_study import TARGETS, Study
-from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement, Setting, rung_of
+from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement, Setting, with_level
 from ngwear.error_estimates.pareto_front import cheapest
 from ngwear.errors import SceneError
 
@@ -40,7 +40,7 @@ class Choice:
     measured: bool = False
 
 
-def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measure) -> Study:
+def run_ladders(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measure) -> Study:
     """Run the levels of all ladders from coarse to fine, the cheapest next level first, within the budget.
 
     A ladder whose coarsest level is that of the scene gives no information until a finer one is run: it comes first.
@@ -62,26 +62,26 @@ def climb(ladders: tuple[Ladder, ...], main: str, budget: float, measure: Measur
         If the budget is too small for one run.
     """
     study = Study(ladders, main, tuple(ladder.own for ladder in ladders))
-    base = _climb_mesh(study, budget, measure)
-    study.base = rung_of(study.own, 0, base)
+    base = _run_mesh_ladder(study, budget, measure)
+    study.base = with_level(study.own, 0, base)
     ended: set[int] = set()
     first = study.runs.get(study.base)
     ladder_budget = budget - min(CONFIRMING * budget, CONFIRMING_RUNS * (first.wall if first else budget))
     while len(ended) < len(ladders):
         waiting = {}
         for k in set(range(len(ladders))) - ended:
-            rung = _next_rung(study, k)
-            if rung is None:
+            level = _next_level(study, k)
+            if level is None:
                 ended.add(k)
             else:
-                waiting[k] = rung, study.next_seconds(k, rung)
+                waiting[k] = level, study.next_seconds(k, level)
         if not waiting:
             break
-        k = min(waiting, key=lambda k: (not _tells_nothing(study, k), waiting[k][1], k))
-        rung, seconds = waiting[k]
-        setting = rung_of(study.base, k, rung)
+        k = min(waiting, key=lambda k: (not _has_base_only(study, k), waiting[k][1], k))
+        level, seconds = waiting[k]
+        setting = with_level(study.base, k, level)
         if not seconds <= ladder_budget - study.spent:
-            _leave_out(study, k, rung, seconds)
+            _leave_out(study, k, level, seconds)
             ended.add(k)
         elif _run(study, setting, ladder_budget, measure).status == STOPPED:
             ended.add(k)
@@ -97,25 +97,25 @@ def _run(study: Study, setting: Setting, budget: float, measure: Measure, *, sha
     return run
 
 
-def _climb_mesh(study: Study, budget: float, measure: Measure) -> int:
+def _run_mesh_ladder(study: Study, budget: float, measure: Measure) -> int:
     """Run the scene on a coarser mesh and on its own; return the mesh level for the other ladders.
 
     Still coarser meshes are used only if this is too slow: on them wear may need many more steps.
     """
     mesh = study.ladders[0]
     first = max(mesh.own - 1, 0)
-    _run(study, rung_of(study.own, 0, first), budget, measure, share=FIRST)
-    rung = first - 1
-    while rung >= 0 and not study.rungs(0) and study.spent < budget:
-        _run(study, rung_of(study.own, 0, rung), budget, measure)
-        rung -= 1
+    _run(study, with_level(study.own, 0, first), budget, measure, share=FIRST)
+    level = first - 1
+    while level >= 0 and not study.levels(0) and study.spent < budget:
+        _run(study, with_level(study.own, 0, level), budget, measure)
+        level -= 1
     if mesh.own > first and study.next_seconds(0, mesh.own) <= FIRST * (budget - study.spent):
         _run(study, study.own, budget, measure)
     _refuse_if_none_fits(study, budget, measure)
-    walls = {rung: run.wall for rung, run in study.rungs(0).items()}
+    walls = {level: run.wall for level, run in study.levels(0).items()}
     left = OTHERS * (budget - study.spent)
-    fit = [rung for rung, wall in walls.items() if wall * _other_runs(study) <= left]
-    return max(fit) if fit else min(walls, key=lambda rung: walls[rung], default=mesh.own)
+    fit = [level for level, wall in walls.items() if wall * _other_runs(study) <= left]
+    return max(fit) if fit else min(walls, key=lambda level: walls[level], default=mesh.own)
 
 
 def _other_runs(study: Study) -> float:
@@ -124,36 +124,36 @@ def _other_runs(study: Study) -> float:
     for ladder in study.ladders[1:]:
         own = ladder.values[ladder.own]
         values = ladder.values[: ladder.own + 2]
-        runs += sum((own / value) ** ladder.growth if own and value else 1.0 for value in values)
+        runs += sum((own / value) ** ladder.cost_exponent if own and value else 1.0 for value in values)
     return runs
 
 
-def _next_rung(study: Study, k: int) -> int | None:
+def _next_level(study: Study, k: int) -> int | None:
     """The coarsest level of a ladder that has not been run; None at its end."""
     ladder = study.ladders[k]
-    tried = [i for i in range(len(ladder.values)) if rung_of(study.base, k, i) in study.runs]
-    rungs = study.rungs(k)
-    finest = max(rungs, default=-1)
+    tried = [i for i in range(len(ladder.values)) if with_level(study.base, k, i) in study.runs]
+    levels = study.levels(k)
+    finest = max(levels, default=-1)
     left = [i for i in range(len(ladder.values)) if i not in tried and not ladder.own < i < finest]
-    failed_fine = any(i > ladder.own and not study.runs[rung_of(study.base, k, i)].ok for i in tried)
+    failed_fine = any(i > ladder.own and not study.runs[with_level(study.base, k, i)].ok for i in tried)
     if not left or failed_fine or study.settled(k):
         return None
-    if ladder.most_solves and 0 <= finest < left[0] and rungs[finest].solves >= ladder.most_solves:
+    if ladder.most_solves and 0 <= finest < left[0] and levels[finest].solves >= ladder.most_solves:
         return left[-1]  # each stroke is solved already: smaller tolerances change nothing
     return left[0]
 
 
-def _tells_nothing(study: Study, k: int) -> bool:
+def _has_base_only(study: Study, k: int) -> bool:
     """Whether a ladder has no run other than the base, which is its coarsest level."""
-    return study.ladders[k].own == 0 and len(study.rungs(k)) < 2
+    return study.ladders[k].own == 0 and len(study.levels(k)) < 2
 
 
-def _leave_out(study: Study, k: int, rung: int, seconds: float) -> None:
+def _leave_out(study: Study, k: int, level: int, seconds: float) -> None:
     """Record a level for which there is no time, and that of the scene if it is finer."""
-    study.left_out[rung_of(study.base, k, rung)] = seconds
+    study.left_out[with_level(study.base, k, level)] = seconds
     own = study.ladders[k].own
-    if own > rung and rung_of(study.base, k, own) not in study.runs:
-        study.left_out[rung_of(study.base, k, own)] = study.next_seconds(k, own)
+    if own > level and with_level(study.base, k, own) not in study.runs:
+        study.left_out[with_level(study.base, k, own)] = study.next_seconds(k, own)
 
 
 def _refuse_if_none_fits(study: Study, budget: float, measure: Measure) -> None:
@@ -197,7 +197,7 @@ def confirm(study: Study, budget: float, measure: Measure) -> list[Choice]:
         Wall time of all runs [s].
     measure : callable
     """
-    if any(len(study.rungs(k)) < 2 for k in range(len(study.ladders))) or study.base not in study.runs:
+    if any(len(study.levels(k)) < 2 for k in range(len(study.ladders))) or study.base not in study.runs:
         return [Choice(target, None) for target in TARGETS]
     if study.seconds(study.finest, wall=True) <= TOGETHER * (budget - study.spent):
         _run(study, study.finest, budget, measure)
@@ -211,7 +211,7 @@ def _confirmed(study: Study, target: float, budget: float, measure: Measure) -> 
     while True:
         setting = cheapest(
             target,
-            [study.rungs(k) for k in range(len(study.ladders))],
+            [study.levels(k) for k in range(len(study.ladders))],
             lambda s: study.predicted_error(s, study.main),
             study.seconds,
             unfit,

@@ -74,7 +74,7 @@ class Assumed:
         """The constants by name."""
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
-    def told(self) -> dict[str, float]:
+    def in_data_sheet_units(self) -> dict[str, float]:
         """The constants in the units of data sheets."""
         return {
             "counter-surface: conductivity [W/(m K)]": self.counter_conductivity,

@@ -12,7 +12,7 @@ from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import NgwearError
 from ngwear.geometry.body import Body
 from ngwear.loop.mounting import MAY_COME, mount, unworn_body
-from ngwear.loop.refinement import wanted_size
+from ngwear.loop.refinement import required_sizes
 from ngwear.loop.stage import Stage
 from ngwear.scene.contact import Contact
 from ngwear.scene.program import Stroke
@@ -79,12 +79,12 @@ def press(scene: Scene, stage: Stage | None = None, *, on_mount: Callable[[float
     on_mount : callable or None
         Called with the completed fraction.
     """
-    tell = on_mount or (lambda fraction: None)
+    report = on_mount or (lambda fraction: None)
     try:
         if scene.deactivation is not None:
             scene, stage = _plain(scene), None
         stage = stage or Stage(scene, unworn_body(scene))
-        mount(stage, tell)
+        mount(stage, report)
         vector = stage.problem.state.vec.FV().NumPy()
         strips, states, kinds = [], [], _kinds(scene)
         for i, stroke in enumerate(kinds):
@@ -94,7 +94,7 @@ def press(scene: Scene, stage: Stage | None = None, *, on_mount: Callable[[float
             advance(stage.problem, stage.stroke_loads(stroke), StepOptions(first=0.125))
             states.append(vector.copy())
             strips += [strip for spec in scene.contacts for strip in _strips(stage, spec, stroke)]
-            tell(0.7 + 0.3 * (i + 1) / len(kinds))
+            report(0.7 + 0.3 * (i + 1) / len(kinds))
     except NgwearError as error:
         return Pressing(missing=str(error).partition("\n")[0])
     return Pressing(tuple(strips), states=tuple(states))
@@ -135,4 +135,4 @@ def history_points(stage: Stage, states: Sequence[Array]) -> int:
     """
     if not states:
         return POINTS * stage.body.mesh.ne
-    return POINTS * Body(stage.body.contour, wanted_size(stage, list(states), reach=MAY_COME)).mesh.ne
+    return POINTS * Body(stage.body.contour, required_sizes(stage, list(states), reach=MAY_COME)).mesh.ne

@@ -69,7 +69,7 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
             for time, ratio in zip(series.times, series.ratios, strict=True)
         },
         "absent": {name: verdict.as_dict() for name, verdict in absent.items()},
-        "assumed": assumed.told(),
+        "assumed": assumed.in_data_sheet_units(),
     }
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ngwear.explanation.assumptions import Assumed
 from ngwear.laws import Constant, FrictionLaw
-from ngwear.loop.element_sizes import chosen, laid_out
+from ngwear.loop.element_sizes import with_contact_lengths, with_mounting_lengths
 from ngwear.loop.law_changes import friction_range
 from ngwear.materials import Folding
 from ngwear.scene.contact import Contact
@@ -49,14 +49,14 @@ def explain_wear(
     from ngwear.loop.stage import Stage
 
     assumed, across = assumed or Assumed(), scene.accuracy.across
-    scene = laid_out(scene)
+    scene = with_mounting_lengths(scene)
     stage = Stage(scene, unworn_body(scene, across))
     problem, material = stage.problem, scene.part.material
     brought = costs(problem, _owners(scene, problem.names))
     pressing = press(scene, stage, on_mount=on_mount)
     if across is not None and pressing.states:
-        scene = chosen(stage, list(pressing.states), across)
-    absent = left_out(scene, pressing, remembers=stage.remembers, assumed=assumed)
+        scene = with_contact_lengths(stage, list(pressing.states), across)
+    absent = left_out(scene, pressing, has_stick_slip=stage.has_stick_slip, assumed=assumed)
     present = _present(scene)
     rate = max((c.wear_rate.highest for c in scene.contacts), default=0.0)
     critical = critical_distance(scene.accuracy.lengths.patch, rate, material.plane_strain_modulus)
@@ -82,7 +82,7 @@ def explain_wear(
         },
         **({"arms of the memory": arms} if (arms := _arms(scene)) is not None else {}),
         "absent": {name: verdict.as_dict() for name, verdict in absent.items()},
-        "assumed": assumed.told(),
+        "assumed": assumed.in_data_sheet_units(),
     }
 
 
@@ -212,10 +212,10 @@ def _memory_numbers(scene: Scene) -> dict[str, float]:
 
 def _arms(scene: Scene) -> dict[str, str] | None:
     """Each arm: its stiffness, Deborah numbers of the strokes, and whether it needs a memory."""
-    prony, folding, told = scene.part.prony, scene.folding, {}
+    prony, folding, arms = scene.part.prony, scene.folding, {}
     if prony is None or folding is None:
         return None
     for time, ratio in zip(prony.times, prony.ratios, strict=True):
         deborah = {f"{time / stroke.duration:.3g}": None for stroke in scene.program.cycle}
-        told[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {folding.fate(time)}"
-    return told
+        arms[f"{time:.4g} s"] = f"G/G_inf = {ratio:.4g}, tau/D = {', '.join(deborah)}: {folding.fate(time)}"
+    return arms

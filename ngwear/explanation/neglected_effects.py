@@ -20,8 +20,8 @@ RELAXED = 0.05  # of the stiffness: what is left of relaxation once it counts as
 UNSAID = "the strokes have no speed"
 
 
-def left_out(scene: Scene, pressing: Pressing, *, remembers: bool, assumed: Assumed) -> dict[str, Verdict]:
-    """Verdict on each effect that the scene does not have; ``remembers``: whether it has stick and slip."""
+def left_out(scene: Scene, pressing: Pressing, *, has_stick_slip: bool, assumed: Assumed) -> dict[str, Verdict]:
+    """Verdict on each effect that the scene does not have; ``has_stick_slip``: whether it has stick and slip."""
     found: dict[str, Callable[[], Verdict]] = {}
     touching = [s for s in pressing.strips if s.contact.slides] or list(pressing.strips)
     rubbing = [s for s in touching if s.contact.slides and s.contact.friction_law is not None]
@@ -36,7 +36,7 @@ def left_out(scene: Scene, pressing: Pressing, *, remembers: bool, assumed: Assu
     sliding = [c for c in frictions if c.slides]
     if scene.part.prony is None:
         found["viscosity"] = lambda: _viscosity(scene)
-    if not remembers:
+    if not has_stick_slip:
         found["stick-slip"] = lambda: _stick_slip(scene)
     found["heat"] = lambda: of(rubbing, _heat) if sliding else _NO_HEAT
     found["adhesion"] = lambda: of(touching, _adhesion)

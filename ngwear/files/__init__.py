@@ -1,1 +1,1 @@
-"""What is read from and written to disk, whatever it holds: tables, and folders whose files are replaced as a whole."""
+"""Files: tables, plain data, HDF5, and result folders whose files are replaced as a whole."""

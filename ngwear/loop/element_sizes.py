@@ -17,7 +17,7 @@ COARSE = 0.3  # of the section's smaller extent: where neither contact nor stres
 MOUNTING = 0.04  # of that extent
 
 
-def laid_out(scene: Scene) -> Scene:
+def with_mounting_lengths(scene: Scene) -> Scene:
     """The scene with element edges for mounting, from the size of the section; unchanged if it gives its own."""
     accuracy = scene.accuracy
     if accuracy.patch is not None:
@@ -28,7 +28,7 @@ def laid_out(scene: Scene) -> Scene:
     return replace(scene, accuracy=lengths)
 
 
-def chosen(stage: Stage, phases: list[Array], across: float) -> Scene:
+def with_contact_lengths(stage: Stage, phases: list[Array], across: float) -> Scene:
     """The stage's scene with ``patch`` = contact width / ``across``; unchanged if no contact carries load.
 
     The width is the mean over all zones of refined contacts in all strokes of the cycle, weighted by their load.

@@ -17,7 +17,7 @@ from ngwear.geometry.layers import layered
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import STEEPEST
 from ngwear.laws.damage import Criterion, Stresses
-from ngwear.loop.remeshing import adopt
+from ngwear.loop.remeshing import replace_stage
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.scene.deactivation import Deactivation
@@ -39,7 +39,7 @@ def element_body(scene: Scene) -> ElementBody:
     SceneError
         If the layers do not fit the section.
     """
-    lengths, depth = scene.accuracy.lengths, _asked(scene).depth
+    lengths, depth = scene.accuracy.lengths, _settings(scene).depth
     sizes = {"edge": lengths.patch, "coarse": lengths.coarse, "grading": lengths.grading}
     try:
         return ElementBody(layered(scene.part.outline, scene.worn_edges, depth=depth, **sizes))
@@ -47,7 +47,7 @@ def element_body(scene: Scene) -> ElementBody:
         raise SceneError("deactivation.depth", depth, f"no such layers fit the section: {error}") from None
 
 
-def _asked(scene: Scene) -> Deactivation:
+def _settings(scene: Scene) -> Deactivation:
     """The settings of deactivation; SceneError without them."""
     if scene.deactivation is None:
         raise SceneError("deactivation", None, "is missing: give the table [deactivation]")
@@ -56,7 +56,7 @@ def _asked(scene: Scene) -> Deactivation:
 
 def _criterion(scene: Scene) -> Criterion:
     """The damage criterion; SceneError without one."""
-    damage = _asked(scene).damage
+    damage = _settings(scene).damage
     if damage is None:
         raise SceneError("deactivation.damage", None, "is missing: give a damage criterion")
     return damage
@@ -114,7 +114,7 @@ def _usage(stage: Stage) -> Array:
 
 def _near_contact(stage: Stage) -> Mask:
     """Mask of the elements within ``Deactivation.reach`` of a contact that wears and carries load."""
-    cells, reach = elements(stage.body).now, _asked(stage.scene).reach
+    cells, reach = elements(stage.body).now, _settings(stage.scene).reach
     if reach is None:
         return np.ones(len(cells.fate), dtype=bool)
     profiles = [stage.contacts[c.name].profile() for c in stage.scene.contacts if c.wears]
@@ -133,7 +133,7 @@ def begin(state: State) -> None:
     SceneError
         With the place of the largest damage in the mounted part.
     """
-    cells, damage = elements(state.stage.body).cells, _asked(state.stage.scene).damage
+    cells, damage = elements(state.stage.body).cells, _settings(state.stage.scene).damage
     if damage is None:
         return
     state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
@@ -157,20 +157,20 @@ def tear(state: State, outline: Outline, repeats: int) -> bool:
     GeometryError
         If no element is left, or the section is cut in two.
     """
-    if _asked(state.stage.scene).damage is None:
+    if _settings(state.stage.scene).damage is None:
         return False
     torn = exhaustion(state, repeats) >= 1.0
     if not torn.any():
         return False
     body = elements(state.stage.body)
     body.move_to(outline)
-    lose(state, body.now, torn, Fate.TORN)
+    deactivate(state, body.now, torn, Fate.TORN)
     return True
 
 
-def tire(state: State, repeats: int, *, last: bool) -> None:
+def add_fatigue(state: State, repeats: int, *, last: bool) -> None:
     """Add the damage of the accepted stroke, for a criterion that accumulates over cycles."""
-    damage = _asked(state.stage.scene).damage
+    damage = _settings(state.stage.scene).damage
     if damage is None or not damage.accumulates:
         return
     mine = elements(state.stage.body).numbers
@@ -180,13 +180,13 @@ def tire(state: State, repeats: int, *, last: bool) -> None:
         state.strained = np.zeros_like(state.strained)
 
 
-def lose(state: State, cells: Cells, dead: Mask, fate: Fate) -> None:
+def deactivate(state: State, cells: Cells, dead: Mask, fate: Fate) -> None:
     """Deactivate elements, add their areas to the ledger by cause, and set the scene up on the remaining ones."""
-    left = booked(state, cells, dead, fate)
-    go_on(state, left)
+    left = without_lost(state, cells, dead, fate)
+    rebuild_stage(state, left)
 
 
-def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
+def without_lost(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
     """The section without some elements; their areas are added to the ledger of the state."""
     scene = state.stage.scene
     touching = {edge for contact in scene.contacts for edge in contact.edges}
@@ -199,17 +199,17 @@ def booked(state: State, cells: Cells, dead: Mask, fate: Fate) -> Cells:
     return left
 
 
-def go_on(state: State, cells: Cells) -> None:
+def rebuild_stage(state: State, cells: Cells) -> None:
     """Set the scene up on the remaining elements; the states are kept as first guesses."""
     old = state.stage
     try:
         stage = Stage(old.scene, ElementBody(cells))
     except MeshError as error:
         raise GeometryError(f"the remaining section has no support or no load: {error}") from None
-    adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
+    replace_stage(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
 
 
-def follow(state: State, outline: Outline, points: Array) -> None:
+def move_surface(state: State, outline: Outline, points: Array) -> None:
     """Move the surface nodes from the outline to worn places, shape (n, 2) [mm]; deactivate distorted elements.
 
     Raises
@@ -219,7 +219,7 @@ def follow(state: State, outline: Outline, points: Array) -> None:
     GeometryError
         If no element is left, or the section is cut in two.
     """
-    body, sieve = elements(state.stage.body), _asked(state.stage.scene).distortion
+    body, distortion_filter = elements(state.stage.body), _settings(state.stage.scene).distortion
     cells = moved = body.cells.moved(points)
     worn = moved.area
     went = dict(zip(cells.rim.tolist(), np.linalg.norm(points - outline.points, axis=1), strict=True))
@@ -227,13 +227,13 @@ def follow(state: State, outline: Outline, points: Array) -> None:
         cells = cells.merged(reached)
     if cells is not moved:
         state.ledger.lost[Fate.WORN] += worn - cells.area  # area of pits and holes whose walls were merged
-    distorted = np.zeros(len(cells.fate), dtype=bool) if sieve is None else sieve.finds(cells)
+    distorted = np.zeros(len(cells.fate), dtype=bool) if distortion_filter is None else distortion_filter.finds(cells)
     if distorted.any() or cells is not moved:  # at a hole, elements may now hang on one merged point
-        cells = booked(state, cells, distorted, Fate.DISTORTED)
+        cells = without_lost(state, cells, distorted, Fate.DISTORTED)
     if np.array_equal(cells.corners, body.cells.corners) and np.array_equal(cells.fate, body.cells.fate):
         body.move_to(replace(outline, points=points))
     else:
-        go_on(state, cells)
+        rebuild_stage(state, cells)
 
 
 def _reached(cells: Cells, went: dict[int, float]) -> NDArray[np.intp]:

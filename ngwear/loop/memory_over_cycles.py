@@ -75,7 +75,7 @@ class CycleMemory:
         halves.stresses = tuple(stress for stress in self.stresses for _ in range(2))
         return halves
 
-    def enter(self, term: StrokeMemory, plan: Plan, kind: int) -> None:
+    def prepare(self, term: StrokeMemory, plan: Plan, kind: int) -> None:
         """Give the term its history for the solve of the last stroke of a kind; the memory is at the plan's start."""
         before = before_last(plan, kind, self.durations, self.times)
         _, mean = step_factors(self.durations[kind], self.times)
@@ -86,7 +86,7 @@ class CycleMemory:
                 history -= float(weight @ feed) * self.stresses[other]
         term.hold(float(weight @ (1 - before.feed[kind])), history)
 
-    def leave(self, term: StrokeMemory, kind: int) -> None:
+    def record(self, term: StrokeMemory, kind: int) -> None:
         """Store the stress at the equilibrium of a stroke."""
         stresses = list(self.stresses)
         stresses[kind] = term.stress()

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.body import Body
-from ngwear.loop.refinement import mounting_field, unworn_outline, wanted_size
+from ngwear.loop.refinement import mounting_field, required_sizes, unworn_outline
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.materials import PronySeries
@@ -102,7 +102,7 @@ def give_memory(state: State, scene: Scene, arms: PronySeries) -> None:
 
     (first, *_), phase = scene.program.cycle, state.phases[0]
     body = state.stage.body
-    field = wanted_size(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
+    field = required_sizes(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
     background = Background(Body(body.contour, field))
     state.stage = stage = Stage(scene, body, background)
     stage.problem.state.vec.FV().NumPy()[:] = phase.vector

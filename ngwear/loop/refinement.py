@@ -29,7 +29,7 @@ FEW = 4.0  # elements across; with two more all follow the outline as closely as
 CONTACT_SLACK, STRESS_SLACK = 1.5, 2.0  # how much too long elements may be before a new mesh is due
 
 
-def wanted_size(
+def required_sizes(
     stage: Stage,
     phases: list[Array],
     *,
@@ -53,7 +53,7 @@ def wanted_size(
     )
 
 
-def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0, left: float = math.inf) -> bool:
+def is_too_coarse(stage: Stage, phases: list[Array], *, sliding: float = 0.0, left: float = math.inf) -> bool:
     """Whether a refined contact, or a stress concentration, has reached elements that are much too coarse.
 
     Gaps count up to half of the width for which ``contact_sizes`` refines, so that a new mesh is not too coarse at
@@ -62,7 +62,7 @@ def outgrown(stage: Stage, phases: list[Array], *, sliding: float = 0.0, left: f
     body = stage.body
     if not isinstance(body, Body):  # a scene that deactivates elements is not remeshed
         return False
-    wanted = wanted_size(stage, phases, reach=NEARER, sliding=sliding, left=left)
+    wanted = required_sizes(stage, phases, reach=NEARER, sliding=sliding, left=left)
     slack = np.where(wanted.sizes > stage.scene.accuracy.lengths.patch, STRESS_SLACK, CONTACT_SLACK)
     return bool(np.any(body.field(wanted.seeds) > slack * wanted.sizes))
 

@@ -13,8 +13,8 @@ from ngwear.errors import MeshError
 from ngwear.geometry.body import Body
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.recession import tidied
-from ngwear.loop.element_sizes import chosen
-from ngwear.loop.refinement import outgrown, unworn_outline, wanted_size
+from ngwear.loop.element_sizes import with_contact_lengths
+from ngwear.loop.refinement import is_too_coarse, required_sizes, unworn_outline
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 
@@ -37,10 +37,10 @@ def is_due(state: State) -> bool:
     moved = np.linalg.norm(body.contour.points - body.base.points, axis=1).max()
     if moved > FARTHEST * scene.accuracy.lengths.patch or np.min(body.contour.lengths / body.base.lengths) < SHORTEST:
         return True
-    return outgrown(state.stage, [p.vector for p in state.phases], **still_ahead(state))
+    return is_too_coarse(state.stage, [p.vector for p in state.phases], **remaining_sliding(state))
 
 
-def still_ahead(state: State) -> dict[str, float]:
+def remaining_sliding(state: State) -> dict[str, float]:
     """Remaining sliding distance [mm], as keyword argument of ``refinement.contact_sizes``.
 
     ``left`` with elements across and remeshing when due: it limits the gaps that may close. ``sliding`` if no other
@@ -66,24 +66,24 @@ def remesh(state: State, contour: Outline | None = None) -> None:
     old, phases = state.stage, [p.vector for p in state.phases]
     contour = old.body.contour if contour is None else contour
     if state.across is not None:
-        old.scene = chosen(old, phases, state.across)
+        old.scene = with_contact_lengths(old, phases, state.across)
         if state.ledger.worn == 0:
             contour = unworn_outline(old.scene)
-    wanted = wanted_size(old, phases, across=state.across, **still_ahead(state))
+    wanted = required_sizes(old, phases, across=state.across, **remaining_sliding(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
     stage = Stage(old.scene, body, state.background)
-    adopt(state, stage, carry(old.problem, phases, stage.problem))
+    replace_stage(state, stage, carry(old.problem, phases, stage.problem))
     state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
     state.ledger.remeshes += 1
 
 
-def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
+def replace_stage(state: State, stage: Stage, vectors: list[Array]) -> None:
     """Replace the stage: ``vectors`` are the states of the strokes on it; values on the outline are interpolated."""
-    values = _Moved(state.contour, stage.body.contour)
+    values = _Interpolation(state.contour, stage.body.contour)
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
         if phase.worn is not None:
@@ -93,7 +93,7 @@ def adopt(state: State, stage: Stage, vectors: list[Array]) -> None:
     state.stage = stage
 
 
-class _Moved:
+class _Interpolation:
     """Interpolates values at the points of one outline (last axis) to those of another of almost the same shape."""
 
     def __init__(self, before: Outline, after: Outline) -> None:

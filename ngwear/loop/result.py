@@ -213,14 +213,14 @@ class Result:
         ResultError
             If the result is read from a folder, or the part could not be mounted.
         """
-        return self._standing.stage.body.mesh
+        return self._final_state.stage.body.mesh
 
     @property
     def displacement(self) -> ng.GridFunction:
         """NGSolve displacement on ``mesh`` at the end of the last stroke [mm]; raises errors as ``mesh``."""
         from ngwear.effects.base import DISPLACEMENT
 
-        return self._standing.stage.problem.fields[DISPLACEMENT]
+        return self._final_state.stage.problem.fields[DISPLACEMENT]
 
     @cached_property
     def stress(self) -> ng.CoefficientFunction:
@@ -230,7 +230,7 @@ class Result:
         """
         from ngwear.loop.stress import cauchy_stress
 
-        return cauchy_stress(self._standing.stage)
+        return cauchy_stress(self._final_state.stage)
 
     @property
     def records(self) -> Recorder:
@@ -247,7 +247,7 @@ class Result:
         return self.state
 
     @property
-    def _standing(self) -> State:
+    def _final_state(self) -> State:
         """The state, with the displacement at the end of the last stroke set in the problem."""
         state = self.end
         if state.phases:

@@ -28,23 +28,23 @@ NO_NAME = re.compile(r'[<>:"/\\|?*\x00-\x1f]')  # what file names cannot hold on
 class Drawing(Protocol):
     """Interface of an object that draws the figures of a run."""
 
-    def first(self, folder: Path, kept: KeptSections) -> None:
+    def draw_section(self, folder: Path, kept: KeptSections) -> None:
         """Draw the loaded section of the unworn part, here or in another process."""
 
-    def rest(self, folder: Path) -> None:
+    def draw_all(self, folder: Path) -> None:
         """Draw all figures; the files exist when this returns."""
 
 
-class DrawnHere:
+class LocalDrawing:
     """Draws the figures of a run in this process."""
 
-    def first(self, folder: Path, kept: KeptSections) -> None:
+    def draw_section(self, folder: Path, kept: KeptSections) -> None:
         """Draw the loaded section."""
         from ngwear.plots.wear import plot_section
 
         plot_section(folder, kept)
 
-    def rest(self, folder: Path, share: tuple[int, int] = (0, 1)) -> None:
+    def draw_all(self, folder: Path, share: tuple[int, int] = (0, 1)) -> None:
         """Draw all figures, or a share of them (``ngwear.plots.wear.plot``)."""
         from ngwear.plots.wear import plot
 
@@ -94,7 +94,7 @@ def run(
     ConvergenceError, GeometryError, MeshError
         When the run gives up and ``throw`` is True.
     """
-    on_step, draw = on_step or (lambda state: None), draw or DrawnHere()
+    on_step, draw = on_step or (lambda state: None), draw or LocalDrawing()
     folder = None if out is None else Folder(Path(out), scene, resume=resume)
     saved = load(folder, scene) if folder is not None and resume else None
     wall, cpu = time.perf_counter(), time.process_time()
@@ -108,7 +108,7 @@ def run(
                 state = stepper.start()
                 _keep(folder, state, recorder, wall, cpu)
                 if folder is not None and figures and recorder.snapshots:
-                    draw.first(folder.path, recorder.sections)
+                    draw.draw_section(folder.path, recorder.sections)
                 on_step(state)
             bar.begin(state)
             while not stepper.finished(state):
@@ -145,7 +145,7 @@ def run(
                 folder.finish(recorder, summary)
     finally:  # an interruption while waiting for the coarser runs loses no figure
         if folder is not None and figures and recorder.rows:
-            draw.rest(folder.path)
+            draw.draw_all(folder.path)
     if error is not None and throw:
         raise error
     return Result(status, message, summary, recorder, state, error, None if folder is None else folder.path)
@@ -163,12 +163,12 @@ def _keep_last(stepper: Stepper, state: State, recorder: Recorder) -> None:
     phases, memory = state.phases, state.memory
     state.phases, state.memory = list(phases), copy(memory)
     try:
-        recorder.add_sections(stepper.look_ahead(state))
+        recorder.add_sections(stepper.solve_next_cycle(state))
     except (ConvergenceError, GeometryError, MeshError) as error:
         log.info("the last section is not saved: %s", error)
     finally:
         state.phases, state.memory = phases, memory
-        stepper.stand(state)
+        stepper.restore_last_stroke(state)
 
 
 def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:

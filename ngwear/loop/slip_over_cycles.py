@@ -13,7 +13,9 @@ from ngwear.scene.program import Stroke
 Array = NDArray[np.float64]
 
 
-def lasting(cycle: Sequence[Stroke], phases: Sequence[Phase], index: int, repeats: int) -> dict[str, Array] | None:
+def slip_per_cycle(
+    cycle: Sequence[Stroke], phases: Sequence[Phase], index: int, repeats: int
+) -> dict[str, Array] | None:
     """Slip over travel of a stroke, mean over its ``repeats`` [-], by contact; wear is proportional to it.
 
     Where wear unloads a place, its neighbours take over the friction and slip a little, once. In a solve for many

@@ -136,7 +136,7 @@ class Stage:
         return self.fluid if spec is not None and spec.leak_pressure else None
 
     @property
-    def remembers(self) -> bool:
+    def has_stick_slip(self) -> bool:
         """Whether a contact has stick and slip: then a stroke depends on the end of the previous one."""
         return bool(self.sticking)
 

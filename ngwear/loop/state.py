@@ -186,7 +186,7 @@ class State:
         return cls(stage, **{f.name: data[f.name] for f in fields(cls) if f.name != "stage"})
 
     def saved(self) -> dict[str, Any]:
-        """Data for ``take_back``, in case a step fails."""
+        """Data for ``restore``, in case a step fails."""
         return {
             "stage": self.stage,
             "contour": self.contour,
@@ -201,7 +201,7 @@ class State:
             "depths": self.depths,
         }
 
-    def take_back(self, saved: dict[str, Any]) -> None:
+    def restore(self, saved: dict[str, Any]) -> None:
         """Restore the state before a rejected step, and count the retry."""
         self.work.retries += 1
         contour = saved.pop("contour")

@@ -14,15 +14,15 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
-from ngwear.loop.element_sizes import chosen, laid_out
+from ngwear.loop.element_sizes import with_contact_lengths, with_mounting_lengths
 from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unworn_body, warn_if_unstable
-from ngwear.loop.refinement import outgrown
-from ngwear.loop.remeshing import is_due, remesh, still_ahead
+from ngwear.loop.refinement import is_too_coarse
+from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
 from ngwear.loop.section_snapshot import section_snapshot
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
-from ngwear.loop.wear_step import Wearing
+from ngwear.loop.wear_step import WearStep
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.wear.cycle_jumps import Plan, planned
@@ -63,13 +63,13 @@ class Stepper:
             error,
             "needs several runs: use ngwear.run",
         )
-        self.scene, self._across = laid_out(scene), scene.accuracy.across
+        self.scene, self._across = with_mounting_lengths(scene), scene.accuracy.across
         self.on_mount = on_mount or (lambda fraction: None)
-        self._losses: ModuleType | None = None
+        self._lost_elements: ModuleType | None = None
         if scene.deactivation is not None:
             from ngwear.loop import lost_elements
 
-            self._losses = lost_elements
+            self._lost_elements = lost_elements
         warn_if_unstable(self.scene)
 
     def start(self) -> State:
@@ -98,8 +98,8 @@ class Stepper:
         problem = stage.problem
         phases = len(scene.program.cycle)
         state.work.add(mount(stage, self.on_mount))
-        if self._losses is not None:
-            self._losses.begin(state)
+        if self._lost_elements is not None:
+            self._lost_elements.begin(state)
         for i, stroke in enumerate(scene.program.cycle):
             stage.begin(problem.state.vec.FV().NumPy())
             state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5)))
@@ -118,15 +118,15 @@ class Stepper:
 
     def _refine(self, state: State) -> None:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
-        ahead = still_ahead(state)
+        ahead = remaining_sliding(state)
         while state.ledger.remeshes < 4:  # more bring little; the run meshes anew where it must
-            vectors, laid = [phase.vector for phase in state.phases], state.stage.scene
+            vectors, before = [phase.vector for phase in state.phases], state.stage.scene
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting mesh may also be too fine
             if state.across is not None:
-                state.stage.scene = chosen(state.stage, vectors, state.across)
-            narrow = state.stage.scene.accuracy.lengths.patch < NARROWER * laid.accuracy.lengths.patch
-            if not (first or narrow or outgrown(state.stage, vectors, **ahead)):
-                state.stage.scene = laid
+                state.stage.scene = with_contact_lengths(state.stage, vectors, state.across)
+            narrow = state.stage.scene.accuracy.lengths.patch < NARROWER * before.accuracy.lengths.patch
+            if not (first or narrow or is_too_coarse(state.stage, vectors, **ahead)):
+                state.stage.scene = before
                 break
             remesh(state)
             self._settle_cycle(state)
@@ -138,10 +138,10 @@ class Stepper:
         state.reports = []
         for i, stroke in enumerate(self.scene.program.cycle):
             sliding = self._strokes(i, 0)
-            wearing = Wearing.begin(state, i, sliding)
+            wear_step = WearStep.begin(state, i, sliding)
             iterations = self._solve_phase(state, i, stroke, sliding)
-            wearing.look()
-            state.reports.append(self._observe(state, i, iterations, sliding))
+            wear_step.store_rates()
+            state.reports.append(self._report(state, i, iterations, sliding))
 
     def finished(self, state: State) -> bool:
         """Whether all strokes of the program are completed."""
@@ -169,41 +169,41 @@ class Stepper:
                 ratio = self._step(state, cycles)
             except (ConvergenceError, GeometryError, MeshError) as error:
                 if cycles == 1:
-                    state.take_back(saved)
+                    state.restore(saved)
                     raise
                 log.info("step of %d cycles failed (%s); half as many are tried", cycles, error)
                 ratio = math.inf
             if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
-                state.take_back(saved)
+                state.restore(saved)
                 most = state.control.cut(cycles)
                 continue
             share = (state.strokes - saved["strokes"]) / program.strokes
             off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)
             state.control.update(ratio, cycles, off)
             if state.strokes in self.scene.kept:
-                self._look(state)
+                self._report_other_strokes(state)
             return state
 
-    def _look(self, state: State) -> None:
+    def _report_other_strokes(self, state: State) -> None:
         """Solve the other strokes of the cycle on the present outline and add their reports; nothing else changes."""
         latest = state.reports[-1].phase
         for i in range(len(self.scene.program.cycle)):
             if i != latest:
                 saved = state.phases[i]
-                state.reports.insert(-1, self._seen(state, i, self._next_cycle(state)))
+                state.reports.insert(-1, self._solve_without_wear(state, i, self._next_cycle(state)))
                 state.phases[i] = saved
-        self.stand(state)
+        self.restore_last_stroke(state)
 
-    def look_ahead(self, state: State) -> list[StrokeReport]:
+    def solve_next_cycle(self, state: State) -> list[StrokeReport]:
         """Solve the strokes of the next cycle without wear; this changes the states and the memory of ``state``."""
         plan, reports = self._next_cycle(state), []
         for i, _ in plan:
-            reports.append(self._seen(state, i, plan))
+            reports.append(self._solve_without_wear(state, i, plan))
             if state.memory is not None and state.stage.memory is not None:
-                state.memory.leave(state.stage.memory, i)
+                state.memory.record(state.stage.memory, i)
         return reports
 
-    def stand(self, state: State) -> None:
+    def restore_last_stroke(self, state: State) -> None:
         """Set the problem to the loads and the equilibrium at the end of the last stroke."""
         problem, latest = state.stage.problem, state.reports[-1].phase
         problem.set_loads(state.stage.stroke_loads(self.scene.program.cycle[latest]))
@@ -215,13 +215,13 @@ class Stepper:
         kinds = len(self.scene.program.cycle)
         return planned(kinds, state.strokes, 1, state.strokes + kinds)
 
-    def _seen(self, state: State, index: int, plan: Plan) -> StrokeReport:
+    def _solve_without_wear(self, state: State, index: int, plan: Plan) -> StrokeReport:
         """Solve a stroke of the cycle on the present outline, without wear."""
         state.phases[index] = replace(state.phases[index], rate=None)
         sliding = self._strokes(index, state.strokes)
-        Wearing.begin(state, index, sliding)
+        WearStep.begin(state, index, sliding)
         iterations = self._solve_phase(state, index, self.scene.program.cycle[index], sliding, plan=plan)
-        return self._observe(state, index, iterations, sliding)
+        return self._report(state, index, iterations, sliding)
 
     def _step(self, state: State, cycles: int) -> float:
         """Solve each stroke of the cycle with its wear; return the relative error of worn area (nan: unknown).
@@ -238,20 +238,20 @@ class Stepper:
             later = {j: self._strokes(j, begin + k + 1 + m, n - 1) for m, (j, n) in enumerate(plan[k + 1 :])}
             outline, iterations, tears = state.contour, 0, True
             while tears:
-                wearing = Wearing.begin(state, i, sliding, later=later)
+                wear_step = WearStep.begin(state, i, sliding, later=later)
                 iterations += self._solve_phase(state, i, cycle[i], sliding, plan=plan)
-                tears = self._losses is not None and self._losses.tear(state, outline, repeats)
+                tears = self._lost_elements is not None and self._lost_elements.tear(state, outline, repeats)
                 if tears and repeats > max(1.0, LATE * self.scene.program.strokes / len(cycle)):
                     return math.inf
                 if tears:
                     outline, state.ledger.late = state.contour, max(state.ledger.late, repeats - 1)
             if memory is not None and state.stage.memory is not None:
-                memory.leave(state.stage.memory, i)
-            seen = self._observe(state, i, iterations, sliding)
+                memory.record(state.stage.memory, i)
+            seen = self._report(state, i, iterations, sliding)
             state.strokes += repeats
-            if self._losses is not None:
-                self._losses.tire(state, repeats, last=k == len(plan) - 1)
-            known &= wearing.take()
+            if self._lost_elements is not None:
+                self._lost_elements.add_fatigue(state, repeats, last=k == len(plan) - 1)
+            known &= wear_step.apply()
             state.reports.append(
                 replace(
                     seen,
@@ -297,21 +297,21 @@ class Stepper:
         problem.set_loads(stage.stroke_loads(stroke))
         for friction in stage.frictions.values():
             friction.coefficient.set_state(sliding.middle, stroke.speed)
-        if stage.remembers:
-            from ngwear.loop.slip_over_cycles import lasting
+        if stage.has_stick_slip:
+            from ngwear.loop.slip_over_cycles import slip_per_cycle
 
-            stage.set_shares(lasting(self.scene.program.cycle, state.phases, index, sliding.repeats))
+            stage.set_shares(slip_per_cycle(self.scene.program.cycle, state.phases, index, sliding.repeats))
         if state.counters:
             from ngwear.loop import counter_surface
 
             counter_surface.place(stage, state.counters, index, sliding)
         if state.memory is not None and stage.memory is not None:
-            state.memory.enter(stage.memory, plan, index)
+            state.memory.prepare(stage.memory, plan, index)
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
         work = Work()
         guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
         for guess in guesses:
-            self._guess(state, guess)
+            self._set_guess(state, guess)
             for term in problem.terms:
                 term.refresh()
             if settle(problem, StepOptions(), work).converged:
@@ -324,14 +324,14 @@ class Stepper:
         state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None, shares=shares)
         return work.iterations
 
-    def _guess(self, state: State, vector: Array) -> None:
+    def _set_guess(self, state: State, vector: Array) -> None:
         """Set the first guess of the next solve; inverted elements are unfolded if the scene deactivates elements."""
         problem = state.stage.problem
         problem.state.vec.FV().NumPy()[:] = vector
         if self.scene.deactivation is not None:
             unfold(problem)
 
-    def _observe(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
+    def _report(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """Report of the stroke's equilibrium, before its wear."""
         stage = state.stage
         kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
@@ -352,7 +352,7 @@ class Stepper:
             contour=state.contour,
             ledger=state.ledger.copy(),
             cells=state.cells,
-            loaded={} if self._losses is None else self._losses.loaded(stage),
+            loaded={} if self._lost_elements is None else self._lost_elements.loaded(stage),
             section=section_snapshot(stage) if kept else {},
         )
 
@@ -365,14 +365,14 @@ class Stepper:
         options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
-        self._guess(state, state.phases[index].vector)
-        if not stage.remembers or self.scene.deactivation is not None:
+        self._set_guess(state, state.phases[index].vector)
+        if not stage.has_stick_slip or self.scene.deactivation is not None:
             try:
                 work.add(relax(problem, options))
                 return
             except ConvergenceError as error:
                 log.info("%s: trying from the previous stroke", error)
-        self._guess(state, state.phases[index - 1].vector)
+        self._set_guess(state, state.phases[index - 1].vector)
         problem.set_loads(stage.stroke_loads(cycle[index - 1]))
         stage.begin(vector)
         try:

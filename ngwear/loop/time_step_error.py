@@ -43,19 +43,19 @@ def time_step_errors(state: State) -> dict[str, float]:
         If a stroke of that cycle has no equilibrium.
     """
     try:
-        whole, halves = ahead(state), ahead(in_halves(state))  # both from the same state
+        whole, halves = next_cycle(state), next_cycle(in_halves(state))  # both from the same state
     finally:
-        Stepper(state.stage.scene).stand(state)
+        Stepper(state.stage.scene).restore_last_stroke(state)
     deepest = _deepest(whole)
     mine, other = (_read(seen, deepest) for seen in (whole, halves))
     return {f"{name[:-4]} {BY_TIME_STEP}": REMAINS * error for name, error in relative_errors(mine, other).items()}
 
 
-def ahead(state: State) -> State:
+def next_cycle(state: State) -> State:
     """Solve the next cycle on a copy of the state, without wear; its ``reports`` are the strokes."""
     there = copy(state)
     there.work, there.phases, there.memory = copy(state.work), list(state.phases), copy(state.memory)
-    there.reports = Stepper(state.stage.scene).look_ahead(there)
+    there.reports = Stepper(state.stage.scene).solve_next_cycle(there)
     return there
 
 

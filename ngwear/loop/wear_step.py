@@ -30,8 +30,8 @@ AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it;
 
 
 @dataclass
-class Wearing:
-    """Wear of the strokes for which one solve stands: ``begin``, solve, ``take``.
+class WearStep:
+    """Wear of the strokes for which one solve stands: ``begin``, solve, ``apply``.
 
     Implicit wear of second order in the step. The outline is predicted: it moves by the wear at the mean pressure of
     the last step, so that the rubber has about the thickness and position of the end of the step. The depth in the
@@ -43,13 +43,13 @@ class Wearing:
     ----------
     outline : Outline
         Outline before the wear.
-    own : array, shape (contacts,)
+    end_weight : array, shape (contacts,)
         Weight of the pressure at the end of the step, 1 - a [-].
-    last : array, shape (contacts, n)
+    last_depth : array, shape (contacts, n)
         Depth at the points of the outline by the mean pressure of the last step, ``kappa a q_0`` [mm].
-    ahead : array, shape (contacts, n)
+    predicted_depth : array, shape (contacts, n)
         Depth between the outline and the predicted outline [mm].
-    coming : array, shape (n,)
+    later_depth : array, shape (n,)
         Depth that later strokes of the step will wear, if the nodes cannot move to the predicted outline [mm]; the
         solve leaves it as a gap.
     """
@@ -58,13 +58,13 @@ class Wearing:
     index: int
     sliding: Strokes
     outline: Outline
-    own: Array
-    last: Array
-    ahead: Array
-    coming: Array
+    end_weight: Array
+    last_depth: Array
+    predicted_depth: Array
+    later_depth: Array
 
     @classmethod
-    def begin(cls, state: State, index: int, sliding: Strokes, *, later: dict[int, Strokes] | None = None) -> Wearing:
+    def begin(cls, state: State, index: int, sliding: Strokes, *, later: dict[int, Strokes] | None = None) -> WearStep:
         """Predict the outline of a stroke of the cycle, and set the wear of its contacts for the next solve.
 
         ``later`` are the strokes of other kinds in this step that come after this solve, before the last stroke of this
@@ -73,22 +73,22 @@ class Wearing:
         scene, phase, outline = state.stage.scene, state.phases[index], state.contour
         n, count = len(outline), len(scene.contacts)
         none = np.zeros((count, n))
-        wearing = cls(state, index, sliding, outline, np.ones(count), none, none, np.zeros(n))
-        ways = wearing.ways
+        wear_step = cls(state, index, sliding, outline, np.ones(count), none, none, np.zeros(n))
+        ways = wear_step.ways
         if scene.wear.scheme == "implicit" and phase.worn is not None and phase.error <= CALM:
             share = np.array([share_of_last(*pair) for pair in zip(ways, phase.worn.ways, strict=True)])
-            depth = wearing._foreseen(index, sliding)
+            depth = wear_step._depth_at_mean_pressure(index, sliding)
             share *= depth.any(axis=1)
-            wearing.own, wearing.last = 1.0 - share, share[:, None] * depth
-            wearing._foresee(depth, later or {})
+            wear_step.end_weight, wear_step.last_depth = 1.0 - share, share[:, None] * depth
+            wear_step._predict_outline(depth, later or {})
         implicit = scene.wear.scheme == "implicit"
-        depth = wearing.last - wearing.ahead + wearing.coming
-        for spec, own, known in zip(scene.contacts, wearing.own, depth, strict=True):
+        depth = wear_step.last_depth - wear_step.predicted_depth + wear_step.later_depth
+        for spec, own, known in zip(scene.contacts, wear_step.end_weight, depth, strict=True):
             contact = state.stage.contacts[spec.name]
             contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
             if spec.wears:
                 contact.set_worn(known)
-        return wearing
+        return wear_step
 
     @property
     def halfway(self) -> Outline:
@@ -103,47 +103,47 @@ class Wearing:
         """Equivalent sliding distance of each contact, ``int k ds / max k`` [mm]."""
         return self._ways(self.sliding)
 
-    def _foreseen(self, kind: int, sliding: Strokes) -> Array:
+    def _depth_at_mean_pressure(self, kind: int, sliding: Strokes) -> Array:
         """Depth at the outline points by the mean pressure of the last step of a kind of stroke [mm], each contact.
 
         Zero where friction may stick: a place that has slipped may stick now.
         """
         stage, worn = self.state.stage, self.state.phases[kind].worn
         if worn is None:
-            return np.zeros_like(self.last)
+            return np.zeros_like(self.last_depth)
         slides = np.array([not stage.contacts[c.name].slips_in_part for c in stage.scene.contacts])
         return (slides * self._ways(sliding))[:, None] * worn.mean
 
     def _ways(self, sliding: Strokes) -> Array:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
 
-    def _foresee(self, depth: Array, later: dict[int, Strokes]) -> None:
+    def _predict_outline(self, depth: Array, later: dict[int, Strokes]) -> None:
         scene, coming = self.state.stage.scene, np.zeros(len(self.outline))
         for kind, sliding in later.items():
             if self.state.phases[kind].error <= CALM:
-                coming = coming + self._foreseen(kind, sliding).sum(axis=0)
+                coming = coming + self._depth_at_mean_pressure(kind, sliding).sum(axis=0)
         whole = depth.sum(axis=0) + coming
         try:
-            foreseen = recede(self.outline, whole * self.outline.widths(scene.worn_edges), scene.worn_edges)
-            if len(foreseen) != len(self.outline):
+            predicted = recede(self.outline, whole * self.outline.widths(scene.worn_edges), scene.worn_edges)
+            if len(predicted) != len(self.outline):
                 raise GeometryError("the outline needs other points")
-            self.state.stage.body.move_to(foreseen)
+            self.state.stage.body.move_to(predicted)
         except (GeometryError, MeshError) as error:
             log.info("%s: the step is done without a predicted outline", error)
-            self.coming = coming
+            self.later_depth = coming
             return
-        moved = np.linalg.norm(foreseen.points - self.outline.points, axis=1)
-        self.ahead = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
+        moved = np.linalg.norm(predicted.points - self.outline.points, axis=1)
+        self.predicted_depth = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
 
-    def look(self) -> None:
+    def store_rates(self) -> None:
         """Store the wear rate at the present pressures, for the error of the first step; wears nothing.
 
         Not done if friction may stick: the slip is not known yet.
         """
         scene, phase = self.state.stage.scene, self.state.phases[self.index]
-        if self.state.stage.remembers:
+        if self.state.stage.has_stick_slip:
             return
-        width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last)
+        width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last_depth)
         pressure, no_contact = none.copy(), np.zeros(len(none))
         for k, spec in enumerate(scene.contacts):
             if spec.wears:
@@ -180,7 +180,7 @@ class Wearing:
         state.ledger.depth += float(depth - last)
         state.ledger.depth_error += float((depth - exact) - (last - last_exact))
 
-    def take(self) -> bool:
+    def apply(self) -> bool:
         """Remove the worn area from the outline; return whether its error is known.
 
         The error of the area is the difference from the trapezoidal rule at the nodes of the mesh, summed over the
@@ -200,16 +200,16 @@ class Wearing:
         halfway = self.halfway
         width = halfway.widths(scene.worn_edges)
         shares = {}
-        if stage.remembers:
-            from ngwear.loop.slip_over_cycles import lasting
+        if stage.has_stick_slip:
+            from ngwear.loop.slip_over_cycles import slip_per_cycle
 
-            shares = lasting(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
+            shares = slip_per_cycle(scene.program.cycle, state.phases, self.index, self.sliding.repeats) or {}
         if state.counters:
             from ngwear.loop import counter_surface
 
             state.counters = counter_surface.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off, err = np.zeros((3, len(outline)))
-        pressure, mean, ways = np.zeros_like(self.last), np.zeros_like(self.last), self.ways
+        pressure, mean, ways = np.zeros_like(self.last_depth), np.zeros_like(self.last_depth), self.ways
         whole = np.zeros(len(ways))
         for k, spec in enumerate(scene.contacts):
             if not spec.wears or ways[k] == 0:
@@ -220,7 +220,7 @@ class Wearing:
             before = 1.0  # rescales the last depth to an outline whose length has changed
             if last is not None and last.mean[k].any():
                 before = last.area[k] / (last.mean[k] * width).sum()
-            area = (self.own[k] * ways[k] * mine + before * self.last[k]) * width
+            area = (self.end_weight[k] * ways[k] * mine + before * self.last_depth[k]) * width
             whole[k] = area.sum() / ways[k]
             share += area
             pressure[k], mean[k] = mine, area / ways[k] / width
@@ -228,7 +228,7 @@ class Wearing:
                 difference = area / width - 0.5 * ways[k] * (before * last.pressure[k] + mine)
                 difference = profile.between_nodes(difference) * width
                 off += difference
-                err += difference * error_over_difference(ways[k], last.ways[k] if self.own[k] < 1.0 else 0.0)
+                err += difference * error_over_difference(ways[k], last.ways[k] if self.end_weight[k] < 1.0 else 0.0)
         known, error = last is not None, float(np.abs(off).sum())
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
@@ -243,7 +243,7 @@ class Wearing:
             state.ledger.worn += float(share.sum())
             state.ledger.removed += outline.area - polygon_area(points)
             state.ledger.moment += polygon_moment(outline.points) - polygon_moment(points)
-            lost_elements.follow(state, outline, points)
+            lost_elements.move_surface(state, outline, points)
             return known
         new = recede(outline, share, scene.worn_edges)
         removed, worn = outline.area - new.area, float(share.sum())

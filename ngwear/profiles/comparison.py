@@ -253,8 +253,8 @@ def _notes(profile: Profile, edge: WornEdge, found: Alignment, slid: float) -> l
             f"the profile is worn deeper than the run's last outline: run about {np.ceil(1.2 * strokes):.0f} strokes, "
             f"or with a specific wear rate {1.2 * found.distance / edge.end:.2g} times as large, and compare again"
         )
-    if edge.remembers:
-        notes.append("the rubber remembers: its outlines depend on time, too, and the wear rate is approximate")
-    if edge.drifts:
+    if edge.has_memory:
+        notes.append("the rubber has_memory: its outlines depend on time, too, and the wear rate is approximate")
+    if edge.laws_vary:
         notes.append("friction or wear follow the sliding distance: the wear rate, a mean over the run, is approximate")
     return notes

@@ -37,9 +37,9 @@ class WornEdge:
         Sliding distance [mm], rising from 0, and strokes done.
     wear_rates : dict
         Specific wear rate k of each contact that wears in the run [mm²/N].
-    remembers : bool
+    has_memory : bool
         Whether the run's rubber has memory.
-    drifts : bool
+    laws_vary : bool
         Whether friction or the wear rate changed with the sliding distance.
     """
 
@@ -50,8 +50,8 @@ class WornEdge:
     distance: Array
     strokes: Array
     wear_rates: dict[str, float]
-    remembers: bool
-    drifts: bool
+    has_memory: bool
+    laws_vary: bool
 
     @property
     def end(self) -> float:
@@ -126,8 +126,8 @@ def read_worn_edge(folder: Path | str, *, edges: Sequence[str] = ()) -> WornEdge
         distance=np.array([d for d, _ in kept.values()]),
         strokes=np.array(list(kept), dtype=float),
         wear_rates=result.wear_rates,
-        remembers=result.remembers,
-        drifts=result.drifts,
+        has_memory=result.has_memory,
+        laws_vary=result.laws_vary,
     )
 
 

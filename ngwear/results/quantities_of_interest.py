@@ -15,18 +15,18 @@ Rows = list[dict[str, Any]]
 DEPTH, AREA, LOST = "maximum depth [-]", "worn area [-]", "area lost in all [-]"
 PEAK, FRICTION = "peak pressure [-]", "friction force [-]"
 LEAKS = "leak pressure [-]"  # only if the scene asks for it
-WHOLE = {
+RUN_COLUMNS = {
     DEPTH: "maximum depth [mm]",
     AREA: "area removed from the outline [mm^2]",
     LOST: "area lost in all [mm^2]",  # only if elements are deactivated
 }
-STROKE = {"peak pressure": PEAK, "contact width": "contact width [-]", "friction force": FRICTION}
-BY_TIME_STEP = "by the time step [-]"  # after a quantity: what of its error that is
+STROKE_ERRORS = {"peak pressure": PEAK, "contact width": "contact width [-]", "friction force": FRICTION}
+BY_TIME_STEP = "by the time step [-]"  # ending of a name: part of the error of a quantity
 # The last half was settled on the filled seal (``verify error_estimates``); so many that chance averages out.
-PLACES = 17  # of the last half of the run, at which histories are read
+PLACES = 17  # number of strokes in the last half of the run at which histories are compared
 
 
-def reading(rows: Rows) -> dict[str, dict[str, list[float]]]:
+def quantities(rows: Rows) -> dict[str, dict[str, list[float]]]:
     """Histories over the last half of a run, by name of the error and name of the quantity.
 
     Each history has ``PLACES`` values, interpolated between solved strokes; solves without wear are not used. For a
@@ -40,7 +40,8 @@ def reading(rows: Rows) -> dict[str, dict[str, list[float]]]:
     def history(column: str, of: Rows) -> Any:
         return np.interp(places, [row["stroke [-]"] for row in of], [row[column] for row in of])
 
-    out = {error: {column: history(column, steps).tolist()} for error, column in WHOLE.items() if column in steps[-1]}
+    columns = {error: column for error, column in RUN_COLUMNS.items() if column in steps[-1]}
+    out = {error: {column: history(column, steps).tolist()} for error, column in columns.items()}
     for kind in dict.fromkeys(map(whole_name, parts)):
         mine = [of for part, of in parts.items() if whole_name(part) == kind]
         for error, column in _of_stroke(mine[-1][-1]):
@@ -58,7 +59,7 @@ def element_edge(rows: Rows) -> float:
 
 def _of_stroke(row: dict[str, Any]) -> Iterator[tuple[str, str]]:
     """Name of the error, and column, of each quantity of a single stroke."""
-    for words, error in STROKE.items():
+    for words, error in STROKE_ERRORS.items():
         yield from ((error, c) for c in row if f" {words} " in c and not c.endswith("[-]"))
     if LEAK in row:
         yield LEAKS, LEAK

@@ -41,7 +41,7 @@ POINTS_ALONG = 200  # number of points for the depth on a straight edge as long 
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
 LEAK, EDGE = "leak pressure [MPa]", "element edge in contact [mm]"
 TORN = "area lost in all by tearing [-]"  # part of the error of the total lost area
-BOOK = LOST | {Fate.WORN: "merging"}  # lost areas; merging of surface nodes changes the area a little
+LOST_AREAS = LOST | {Fate.WORN: "merging"}  # lost areas; merging of surface nodes changes the area a little
 
 
 def depths(before: Outline, after: Outline) -> Array:
@@ -113,7 +113,7 @@ class Recorder:
         for name in dict.fromkeys(scene.worn_edges):
             row[f"depth at {name} [mm]"] = float(depth[unworn.on((name,))].max())
         if report.cells is not None:
-            row |= self._book(report)
+            row |= self._lost_areas(report)
         for contact, profile in report.contacts.items():
             zones = profile.zones()
             highest = max(zones, key=lambda z: z.peak, default=None)
@@ -145,10 +145,10 @@ class Recorder:
         }
         return row
 
-    def _book(self, report: Any) -> dict[str, Any]:
+    def _lost_areas(self, report: Any) -> dict[str, Any]:
         """Lost area and elements by cause, in total and in the last solve."""
         ledger, before = report.ledger, self.rows[-1] if self.rows else {}
-        areas = {"wear": ledger.removed} | {name: ledger.lost[fate] for fate, name in BOOK.items()}
+        areas = {"wear": ledger.removed} | {name: ledger.lost[fate] for fate, name in LOST_AREAS.items()}
         out: dict[str, Any] = {f"area lost by {name} [mm^2]": area for name, area in areas.items()}
         out["area lost in all [mm^2]"] = self.unworn_area - report.cells.area
         out |= {f"{k[:-7]} in this solve [mm^2]": area - before.get(k, 0.0) for k, area in list(out.items())}
@@ -214,7 +214,7 @@ class Recorder:
         for name in dict.fromkeys(scene.worn_edges):
             out[f"{name} depth [mm]"] = float(depth[unworn.on((name,))].max())
         if state.cells is not None:
-            out |= {f"area lost by {name} [mm^2]": ledger.lost[fate] for fate, name in BOOK.items()}
+            out |= {f"area lost by {name} [mm^2]": ledger.lost[fate] for fate, name in LOST_AREAS.items()}
             out["area lost in all [mm^2]"] = self.unworn_area - state.cells.area
         peaks = [c for c in (self.rows[-1] if self.rows else {}) if c.endswith("peak pressure [MPa]")]
         leaks = [LEAK] if self.rows and LEAK in self.rows[-1] else []

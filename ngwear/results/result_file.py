@@ -53,9 +53,9 @@ class ResultFile:
     wear_rates : dict
         Specific wear rate k of each contact that wears, mean over the run [mm²/N].
     worn_edges : tuple of str
-    remembers : bool
+    has_memory : bool
         Whether the rubber has memory.
-    drifts : bool
+    laws_vary : bool
         Whether a law of friction or wear changes with the sliding distance.
     damage : tuple or None
         Name of the criterion that tears elements and its critical value; None without one.
@@ -73,8 +73,8 @@ class ResultFile:
     edges: tuple[str, ...]
     wear_rates: dict[str, float]
     worn_edges: tuple[str, ...]
-    remembers: bool
-    drifts: bool
+    has_memory: bool
+    laws_vary: bool
     damage: tuple[str, float] | None
     errors: dict[str, float]
     series: dict[str, Array]
@@ -117,8 +117,8 @@ def read_result(folder: Path | str) -> ResultFile:
                 worn_edges=tuple(
                     dict.fromkeys(str(edge) for attributes in worn.values() for edge in attributes["edges"])
                 ),
-                remembers=bool(h5.attrs.get("memory", False)),
-                drifts=bool(h5.attrs.get("laws over distance", False)),
+                has_memory=bool(h5.attrs.get("memory", False)),
+                laws_vary=bool(h5.attrs.get("laws over distance", False)),
                 damage=(
                     (str(h5.attrs["damage criterion"]), float(h5.attrs["critical damage"]))
                     if "damage criterion" in h5.attrs

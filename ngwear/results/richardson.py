@@ -32,11 +32,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 LOWEST, HIGHEST = 1.0, 1.5  # order of convergence: see above; the lower settled on ``verify error_estimates``
-FAR = 1 / 3  # of the reading: a coarsest run further off tells nothing of the finest; settled on the rod seal's peak
-Reading = Mapping[str, Mapping[str, ArrayLike]]
+FAR = 1 / 3  # relative difference beyond which the coarsest run is not used; settled on the rod seal's peak
+Quantities = Mapping[str, Mapping[str, ArrayLike]]
 
 
-def order_seen(fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike, *, ratio: float = 2.0) -> float | None:
+def observed_order(fine: ArrayLike, coarse: ArrayLike, coarsest: ArrayLike, *, ratio: float = 2.0) -> float | None:
     """Observed order of convergence, within its limits; None if the differences change direction, or grow."""
     last, before = np.subtract(fine, coarse), np.subtract(coarse, coarsest)
     if np.vdot(last, before) <= 0 or _square(before) < _square(last):
@@ -70,22 +70,22 @@ def error_of_finest(
         coarsest = None
     if coarsest is None:
         return math.sqrt(_square(last)) / (ratio**order - 1)
-    seen = order_seen(fine, coarse, coarsest, ratio=ratio)
-    if seen is not None:
-        return math.sqrt(_square(last)) / (ratio**seen - 1)
+    order_found = observed_order(fine, coarse, coarsest, ratio=ratio)
+    if order_found is not None:
+        return math.sqrt(_square(last)) / (ratio**order_found - 1)
     weights = [1.0, ratio**-2, ratio**-4]
-    readings = np.array([fine, coarse, coarsest], dtype=float)
-    best = np.average(readings, axis=0, weights=weights)
-    scatter = sum(w * _square(q - best) for w, q in zip(weights, readings, strict=True)) / (len(weights) - 1)
+    runs = np.array([fine, coarse, coarsest], dtype=float)
+    best = np.average(runs, axis=0, weights=weights)
+    scatter = sum(w * _square(q - best) for w, q in zip(weights, runs, strict=True)) / (len(weights) - 1)
     turns = np.vdot(last, np.subtract(coarse, coarsest)) < 0
     trend = 0.0 if turns else max(0.0, _square(last) - (1 + ratio**2) * scatter) / (ratio - 1) ** 2
     return math.sqrt(trend + scatter)
 
 
 def relative_errors(
-    fine: Reading,
-    coarse: Reading,
-    coarsest: Reading | None = None,
+    fine: Quantities,
+    coarse: Quantities,
+    coarsest: Quantities | None = None,
     *,
     ratio: float = 2.0,
     orders: Mapping[str, float] | None = None,

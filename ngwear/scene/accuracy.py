@@ -140,7 +140,7 @@ class Accuracy:
         """For reference solutions."""
         return cls.preset("reference")
 
-    def given(self, other: Accuracy) -> Accuracy:
+    def with_tolerances_of(self, other: Accuracy) -> Accuracy:
         """Take lengths and tolerances (or ``across``, or ``error``) of another; keep order, folding_error and parts.
 
         The grading is kept if it was given; the default is replaced by the other's default.
@@ -157,8 +157,8 @@ class Accuracy:
         longest_jump: float | None = None,
         depth_error: float | None = None,
     ) -> Accuracy:
-        """The same with this number of elements across and these tolerances; the grading as in ``given``."""
-        return self.given(
+        """The same with this number of elements across and these tolerances; grading as in ``with_tolerances_of``."""
+        return self.with_tolerances_of(
             Accuracy(
                 across=across,
                 stress_error=stress_error,

@@ -34,10 +34,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from ngwear.error_estimates.coarser_runs import COARSER, coarser, scaled, stated
+from ngwear.error_estimates.coarser_runs import COARSER, coarser_scene, combined_errors, scaled
 from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
-from ngwear.results.quantities_of_interest import reading
+from ngwear.results.quantities_of_interest import quantities
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.scene import Scene
 from ngwear.sliding.pin import slide_pin
@@ -74,7 +74,7 @@ def of_run(words: str, scene: Scene, factor: float) -> list[Check]:
     watch = Stopwatch()
     result, finest = (run_scene(level, figures=False) for level in (scene, scaled(scene, factor)))
     said = stated_of(result, scene)
-    true = relative_errors(reading(result.records.rows), reading(finest.records.rows))
+    true = relative_errors(quantities(result.records.rows), quantities(finest.records.rows))
     return effectivities(CASE, words, said, true, watch.seconds)
 
 
@@ -87,9 +87,9 @@ def of_leak() -> list[Check]:
 
 def stated_of(result: Result, scene: Scene) -> dict[str, float]:
     """What a run that ended would have stated beside its companions."""
-    levels = [run_scene(coarser(scene, COARSER**power), figures=False) for power in (1, 2)]
-    mine, other, coarsest = (reading(r.records.rows) for r in (result, *levels))
-    return stated(scene, result.summary["error estimates"], mine, other, coarsest)
+    levels = [run_scene(coarser_scene(scene, COARSER**power), figures=False) for power in (1, 2)]
+    mine, other, coarsest = (quantities(r.records.rows) for r in (result, *levels))
+    return combined_errors(scene, result.summary["error estimates"], mine, other, coarsest)
 
 
 def of_pin() -> list[Check]:

@@ -29,7 +29,7 @@ from ngwear.geometry.cells import Cells, Fate, Mask, outlined
 from ngwear.geometry.element_body import ElementBody, elements
 from ngwear.geometry.outline import Array
 from ngwear.laws.damage import MaximumPrincipalStress
-from ngwear.loop.lost_elements import lose
+from ngwear.loop.lost_elements import deactivate
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.materials import NeoHooke
@@ -162,7 +162,7 @@ def run() -> list[Check]:
     clock.start()
     state = pressed(block())
     press(state)
-    lose(state, elements(state.stage.body).now, patch(), Fate.TORN)
+    deactivate(state, elements(state.stage.body).now, patch(), Fate.TORN)
     first, second = press(state), press(pressed(anew(elements(state.stage.body).cells)))
     add(
         "displacements against the same meshed anew [-]", np.abs(first - second).max() / np.abs(first).max(), 0.0, 1e-10
@@ -171,7 +171,7 @@ def run() -> list[Check]:
     clock.start()
     state = pressed(block())
     press(state)
-    lose(state, elements(state.stage.body).now, np.arange(NX * NY) >= NX * (NY - 1), Fate.TORN)
+    deactivate(state, elements(state.stage.body).now, np.arange(NX * NY) >= NX * (NY - 1), Fate.TORN)
     below = press(state)
     contact = state.stage.contacts["plane"]
     add("resultant on the faces below over the force [-]", -contact.force()[1] / FORCE, 1.0, 1e-9)

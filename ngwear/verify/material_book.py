@@ -21,7 +21,7 @@ from ngwear.geometry.cells import Cells
 from ngwear.laws.damage import MaximumPrincipalStress
 from ngwear.loop.run import run as run_scene
 from ngwear.loop.state import State
-from ngwear.results.recorder import BOOK, LOST
+from ngwear.results.recorder import LOST, LOST_AREAS
 from ngwear.scene.deactivation import DistortionFilter
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.scene import Scene
@@ -29,7 +29,7 @@ from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.no_loss import scene
 
 CAUSES = ("wear", *LOST.values())  # all at work here
-BOOKED = ("wear", *BOOK.values())
+BOOKED = ("wear", *LOST_AREAS.values())
 CYCLES, WAY = 4, 60.0  # mm, to and fro
 BOUND = {2: 1e-2, 4: 4e-3}  # of the depth, by strokes a cycle
 

@@ -39,7 +39,7 @@ from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Outline
 from ngwear.loop.memory_over_cycles import CycleMemory
 from ngwear.loop.run import run as run_scene
-from ngwear.loop.time_step_error import ahead
+from ngwear.loop.time_step_error import next_cycle
 from ngwear.materials import MooneyRivlin, PronySeries
 from ngwear.results import quantities_of_interest
 from ngwear.scene.accuracy import Accuracy
@@ -122,9 +122,9 @@ class Strokes:
         """Solve all strokes of a plan; what is seen in each, shape (kinds, 2)."""
         seen = []
         for kind, _ in plan:
-            self.memory.enter(self.term, plan, kind)
+            self.memory.prepare(self.term, plan, kind)
             advance(self.rig.problem, self.rig.loads(kind), StepOptions(first=0.5))
-            self.memory.leave(self.term, kind)
+            self.memory.record(self.term, kind)
             seen.append(self.rig.seen())
         self.memory.commit(plan)
         return np.array(seen)
@@ -181,7 +181,7 @@ def time_step() -> list[Check]:
     for parts in (1, 4):
         result = run_scene(scene(parts), figures=False)
         exact = resolved(result.end.stage.body, STROKES + 2)[-2:, 0]
-        forces = [abs(report.forces["roller"][1]) for report in ahead(result.end).reports]
+        forces = [abs(report.forces["roller"][1]) for report in next_cycle(result.end).reports]
         force = np.mean(np.reshape(forces, (2, parts)), axis=1)
         off[parts] = float(np.linalg.norm(force - exact) / np.linalg.norm(exact))
         said = result.summary["error estimates"][

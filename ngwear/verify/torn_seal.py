@@ -29,8 +29,8 @@ from ngwear.errors import NgwearError
 from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.sweep import Outcome, sweep
-from ngwear.results.quantities_of_interest import reading
-from ngwear.results.recorder import BOOK
+from ngwear.results.quantities_of_interest import quantities
+from ngwear.results.recorder import LOST_AREAS
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
@@ -93,7 +93,8 @@ def run(folder: Path | None = None) -> Iterator[Check]:
         torn = _torn(results[name])
         yield _check(f"torn share of the area lost, {name} [-]", torn, 0.0, seconds, "above")
     watch, mine = Stopwatch(), results[TWO]
-    true = relative_errors(*(reading(result.records.rows) for result in (mine, results["elements of half the side"])))
+    pair = (mine, results["elements of half the side"])
+    true = relative_errors(*(quantities(result.records.rows) for result in pair))
     said = stated_of(mine, _scene(TWO))
     yield from effectivities(CASE, scene.name, said, true, watch.seconds)
 
@@ -125,7 +126,7 @@ def whole(scene: Scene, result: Result) -> list[Check]:
     summary, seconds = result.summary, _seconds(result)
     side = scene.accuracy.lengths.patch
     lost = summary["area lost in all [mm^2]"]
-    booked = sum(summary[f"area lost by {cause} [mm^2]"] for cause in BOOK.values()) + summary["worn area [mm^2]"]
+    booked = sum(summary[f"area lost by {cause} [mm^2]"] for cause in LOST_AREAS.values()) + summary["worn area [mm^2]"]
     ranked = [summary[f"{edge} depth [mm]"] for edge in ("lip", "left ridges", "heel")]
     return [
         _check("time that is done [min]", scene.program.elapsed(summary["strokes"]) / 60.0, 60.0, seconds, "above"),

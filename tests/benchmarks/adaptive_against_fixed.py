@@ -53,7 +53,7 @@ def fine_along_the_edges(edge):
 
     mounting.mounting_field = field
     for module in (refinement, remeshing):
-        module.wanted_size = wanted
+        module.required_sizes = wanted
 
 
 def subject(kind, setting, jump, name):

@@ -31,7 +31,7 @@ class Watched(Stepper):
         super().__init__(scene)
         self.found: list[Finding] = []
 
-    def _observe(self, state, index, iterations, sliding):
+    def _report(self, state, index, iterations, sliding):
         contact = state.stage.contacts[self.scene.contacts[0].name]
         friction = state.stage.frictions.get(contact.name)
         force = self.scene.contacts[0].force
@@ -39,7 +39,7 @@ class Watched(Stepper):
         if force is not None:
             across = -contact.force()[1] - (friction.force()[1] if friction else 0.0)
             self.found.append(near("force across", across, force, 1e-6))
-        return super()._observe(state, index, iterations, sliding)
+        return super()._report(state, index, iterations, sliding)
 
 
 def worn(scene: Scene):

@@ -124,7 +124,7 @@ def test_what_was_not_kept_is_said(folder):
         result.outline(9)
     with pytest.raises(ResultError, match=r"contact 'rod' was not saved; saved: \['roller'\]"):
         result.pressure("rod")
-    with pytest.raises(ResultError, match="no stroke 'back' was kept"):
+    with pytest.raises(ResultError, match="no stroke is called 'back'"):
         result.pressure(kind="back")
     with pytest.raises(ResultError, match="kept only by the run itself"):
         _ = nw.read_result(out).mesh

@@ -11,17 +11,17 @@ from ngwear.error_estimates.coarser_runs import (
     COARSEST,
     FILE,
     LEAST_COARSER,
-    coarser,
-    coarser_by,
-    growth,
-    run_stated,
-    stated,
+    coarser_scene,
+    combined_errors,
+    depth_exponent,
+    edge_ratio,
+    run_with_coarser_runs,
 )
 from ngwear.loop.run import run
 from ngwear.materials import PronySeries
 from ngwear.parallel.workers import Worker
 from ngwear.plots import wear
-from ngwear.results.quantities_of_interest import DEPTH, LOST, PEAK, PLACES, element_edge, reading
+from ngwear.results.quantities_of_interest import DEPTH, LOST, PEAK, PLACES, element_edge, quantities
 from ngwear.results.recorder import TORN, fingerprint
 from ngwear.results.result_file import read_result
 from ngwear.results.richardson import relative_errors
@@ -39,14 +39,14 @@ def scene(scheme):
 def without_companions(scene, folder):
     """Leave in the folder that both companions gave up, so that none is run."""
     for name, factor in ((FILE, 2.0), (COARSEST, 4.0)):
-        told = {"scene": fingerprint(coarser(scene, factor)), "gave up": "no equilibrium"}
+        told = {"scene": fingerprint(coarser_scene(scene, factor)), "gave up": "no equilibrium"}
         (folder / name).write_text(json.dumps(told))
 
 
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("run")
-    return folder, run_stated(scene("implicit"), out=folder, figures=False)
+    return folder, run_with_coarser_runs(scene("implicit"), out=folder, figures=False)
 
 
 def test_errors_by_hand():
@@ -72,21 +72,21 @@ def test_an_error_of_order_half_to_two_is_met_within_a_factor_of_three():
 
 def test_the_companion_is_coarser_in_every_setting():
     fine = no_loss.scene("implicit")
-    coarse = coarser(fine).accuracy
+    coarse = coarser_scene(fine).accuracy
     assert coarse.patch == 2 * fine.accuracy.patch
     assert coarse.coarse == 2 * fine.accuracy.coarse
     assert coarse.mounting >= coarse.patch
     assert coarse.stress_error == pytest.approx(4 * fine.accuracy.stress_error)
     assert coarse.wear_error == pytest.approx(2 * fine.accuracy.wear_error)
-    assert replace(coarser(fine), accuracy=fine.accuracy, save=fine.save) == fine
+    assert replace(coarser_scene(fine), accuracy=fine.accuracy, save=fine.save) == fine
 
 
 def test_a_run_states_the_error_of_all_that_is_read_off(finished):
     folder, result = finished
     errors = json.loads((folder / "summary.json").read_text())["error estimates"]
     assert errors == result.summary["error estimates"]
-    others = [companion.run_scene(coarser(scene("implicit"), factor), figures=False) for factor in (2.0, 4.0)]
-    mine, *theirs = (reading(r.recorder.rows) for r in (result, *others))
+    others = [companion.run_scene(coarser_scene(scene("implicit"), factor), figures=False) for factor in (2.0, 4.0)]
+    mine, *theirs = (quantities(r.recorder.rows) for r in (result, *others))
     found = relative_errors(mine, *theirs)
     least = {PEAK: relative_errors(mine, theirs[0])[PEAK]}  # the scene may lose elements
     for name in ("maximum depth", "worn area", "peak pressure", "contact width", "friction force"):
@@ -102,7 +102,7 @@ def test_a_run_states_the_error_of_all_that_is_read_off(finished):
 def test_histories_are_read_along_the_last_half(finished):
     _, result = finished
     rows, strokes = result.recorder.rows, result.summary["strokes"]
-    read = reading(rows)
+    read = quantities(rows)
     assert set(read["peak pressure [-]"]) == {f"{kind}: cylinder peak pressure [MPa]" for kind in ("forth", "back")}
     (depth,) = read["maximum depth [-]"].values()
     assert len(depth) == PLACES
@@ -111,7 +111,7 @@ def test_histories_are_read_along_the_last_half(finished):
     half = np.interp(strokes / 2, [r["stroke [-]"] for r in done], [r["maximum depth [mm]"] for r in done])
     assert depth[0] == pytest.approx(half)
     looked_at = dict(rows[-1], **{"strokes in one solve [-]": 0, "maximum depth [mm]": 9.0})
-    assert reading([*rows, looked_at]) == read
+    assert quantities([*rows, looked_at]) == read
     assert all(len(force) == PLACES for force in read["friction force [-]"].values())
 
 
@@ -129,15 +129,15 @@ def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
     bound, embedded = jumps.folding.bound, {"maximum depth [-]": 0.02, "worn area [-]": 0.01}
     assert 0 < bound < 1e-3
     mine, other = ({"maximum depth [-]": {"d": [d]}, "peak pressure [-]": {"p": [2 * d]}} for d in (1.0, 1.04))
-    found = stated(jumps, embedded, mine, other)
+    found = combined_errors(jumps, embedded, mine, other)
     assert found["stress by arms folded away [-]"] == bound
     for name in ("maximum depth", "peak pressure"):
         assert found[f"{name} by mesh and wear steps [-]"] == pytest.approx(0.04)
         assert found[f"{name} [-]"] == pytest.approx(0.04 + bound)
     assert found["maximum depth by the wear steps alone [-]"] == 0.02
-    jumpy = stated(jumps, embedded | {DEPTH: 0.06}, mine, other)
+    jumpy = combined_errors(jumps, embedded | {DEPTH: 0.06}, mine, other)
     assert jumpy[DEPTH] == pytest.approx(0.06), "what elements and jumps make up for is stated all the same"
-    each = stated(replace(jumps, wear=replace(jumps.wear, step="each")), embedded, mine, other)
+    each = combined_errors(replace(jumps, wear=replace(jumps.wear, step="each")), embedded, mine, other)
     assert each["maximum depth [-]"] == pytest.approx(0.04 + bound + 0.02)
     assert each["peak pressure [-]"] == pytest.approx(0.04 + bound)
     assert each["maximum depth by mesh [-]"] == pytest.approx(0.04)
@@ -145,7 +145,7 @@ def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
 
 def test_all_that_is_torn_counts_as_error_of_the_area_lost_and_of_the_depth():
     mine, other = ({LOST: {"a": [a]}, DEPTH: {"d": [1.0]}} for a in (1.0, 1.04))
-    found = stated(scene("implicit"), {TORN: 0.1}, mine, other)
+    found = combined_errors(scene("implicit"), {TORN: 0.1}, mine, other)
     assert found[LOST] == pytest.approx(0.04 + 0.1)
     assert found["area lost in all by mesh and wear steps [-]"] == pytest.approx(0.04)
     assert found[DEPTH] == pytest.approx(0.1)
@@ -163,30 +163,30 @@ def test_all_that_is_torn_counts_as_error_of_the_area_lost_and_of_the_depth():
 )
 def test_depths_grow_by_a_power_of_the_area(depth, area, power):
     mine = {DEPTH: {"d": depth}, LOST: {"a": area}}
-    assert growth(mine) == pytest.approx(power)
-    assert stated(scene("implicit"), {TORN: 0.1}, mine, mine)[DEPTH] == pytest.approx(0.1 * power)
+    assert depth_exponent(mine) == pytest.approx(power)
+    assert combined_errors(scene("implicit"), {TORN: 0.1}, mine, mine)[DEPTH] == pytest.approx(0.1 * power)
 
 
 def test_where_elements_are_lost_peaks_err_by_no_less_than_their_last_difference():
     losing = scene("implicit")
     levels = [{PEAK: {"out": [p]}, DEPTH: {"d": [1.0]}} for p in (1.0, 0.9, 1.0)]
-    assert stated(losing, {}, *levels)[PEAK] == pytest.approx(0.1)
-    scatter = stated(replace(losing, deactivation=None), {}, *levels)[PEAK]
+    assert combined_errors(losing, {}, *levels)[PEAK] == pytest.approx(0.1)
+    scatter = combined_errors(replace(losing, deactivation=None), {}, *levels)[PEAK]
     assert scatter < 0.08, "differences that turn round are scatter"
 
 
 def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
     folder, result = finished
     other = json.loads((folder / FILE).read_text())
-    coarsest = {"scene": fingerprint(coarser(scene("implicit"), 4.0)), "gave up": "no equilibrium"}
+    coarsest = {"scene": fingerprint(coarser_scene(scene("implicit"), 4.0)), "gave up": "no equilibrium"}
     for name, left in ((FILE, other), (COARSEST, coarsest)):
         (tmp_path / name).write_text(json.dumps(left))
-    summary = run_stated(scene("implicit"), out=tmp_path, figures=False).summary
+    summary = run_with_coarser_runs(scene("implicit"), out=tmp_path, figures=False).summary
     assert summary["warnings"] == [
         "the coarsest run gave up: no equilibrium; first order is assumed for the error of the mesh"
     ]
-    ratio = coarser_by(element_edge(result.recorder.rows), other["element edge [mm]"])
-    found = relative_errors(reading(result.recorder.rows), other["reading"], ratio=ratio)
+    ratio = edge_ratio(element_edge(result.recorder.rows), other["element edge [mm]"])
+    found = relative_errors(quantities(result.recorder.rows), other["reading"], ratio=ratio)
     assert summary["error estimates"]["peak pressure [-]"] == pytest.approx(found["peak pressure [-]"])
 
 
@@ -195,11 +195,12 @@ def test_a_companion_counts_for_as_much_coarser_as_its_elements_in_contact_are(f
     edge = element_edge(result.recorder.rows)
     assert 0.5 < edge / result.summary["element edge in the contact [mm]"] < 1.5
     assert json.loads((folder / FILE).read_text())["element edge [mm]"] > 1.5 * edge
-    assert [coarser_by(0.1, other) for other in (0.1, 0.15, 0.2, 0.3)] == pytest.approx([LEAST_COARSER, 1.5, 2, 2])
-    assert coarser_by(0.1, 0.0) == coarser_by(0.0, 0.1) == COARSER
+    assert [edge_ratio(0.1, other) for other in (0.1, 0.15, 0.2, 0.3)] == pytest.approx([LEAST_COARSER, 1.5, 2, 2])
+    assert edge_ratio(0.1, 0.0) == edge_ratio(0.0, 0.1) == COARSER
     mine, other, coarsest = ({DEPTH: {"d": [d]}} for d in (1.0, 1.04, 1.12))
     jumps = replace(scene("implicit"), deactivation=None, wear=Wear())
-    two, three = stated(jumps, {}, mine, other, ratio=1.5), stated(jumps, {}, mine, other, coarsest, ratio=1.5)
+    two = combined_errors(jumps, {}, mine, other, ratio=1.5)
+    three = combined_errors(jumps, {}, mine, other, coarsest, ratio=1.5)
     assert two[DEPTH] == pytest.approx(0.04 / 0.5)
     assert three[DEPTH] == pytest.approx(0.04), "three tell their order"
 
@@ -209,11 +210,12 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
     folder, result = finished
     for name in (FILE, COARSEST):
         shutil.copy(folder / name, tmp_path / name)
-    mine, other = reading(result.recorder.rows), json.loads((folder / FILE).read_text())["reading"]
+    mine, other = quantities(result.recorder.rows), json.loads((folder / FILE).read_text())["reading"]
     errors = result.summary["error estimates"]
-    ratio = coarser_by(element_edge(result.recorder.rows), json.loads((folder / FILE).read_text())["element edge [mm]"])
+    ratio = edge_ratio(element_edge(result.recorder.rows), json.loads((folder / FILE).read_text())["element edge [mm]"])
     two = relative_errors(mine, other, ratio=ratio)[DEPTH] + errors["maximum depth by the wear steps alone [-]"]
-    summary = run_stated(scene("implicit"), out=tmp_path, enough={DEPTH: over * two}, figures=False).summary
+    requested = {DEPTH: over * two}
+    summary = run_with_coarser_runs(scene("implicit"), out=tmp_path, requested=requested, figures=False).summary
     assert ("solves of the coarsest companion" in summary) is needed
     assert summary["error estimates"][DEPTH] == pytest.approx(errors[DEPTH] if needed else two)
     assert not any("coarse" in warning for warning in summary["warnings"])
@@ -222,27 +224,26 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
 def test_a_companion_that_has_ended_is_not_run_again(finished, monkeypatch):
     folder, result = finished
     monkeypatch.setattr(companion, "Worker", None)
-    again = run_stated(scene("implicit"), out=folder, resume=True, figures=False)
+    again = run_with_coarser_runs(scene("implicit"), out=folder, resume=True, figures=False)
     assert again.summary["error estimates"] == result.summary["error estimates"]
 
 
 def test_the_readings_of_another_scene_are_not_taken(finished, tmp_path):
     folder, result = finished
     left = json.loads((folder / FILE).read_text())
-    assert left["scene"] == fingerprint(coarser(scene("implicit")))
+    assert left["scene"] == fingerprint(coarser_scene(scene("implicit")))
     left["scene"], left["reading"]["maximum depth [-]"] = "another", {"maximum depth [mm]": 1.0}
     (tmp_path / FILE).write_text(json.dumps(left))
-    assert run_stated(scene("implicit"), out=tmp_path, figures=False).summary["error estimates"] == pytest.approx(
-        result.summary["error estimates"]
-    )
+    again = run_with_coarser_runs(scene("implicit"), out=tmp_path, figures=False)
+    assert again.summary["error estimates"] == pytest.approx(result.summary["error estimates"])
 
 
 def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     short = scene("implicit")
     short = replace(short, program=replace(short.program, strokes=2))
-    left = {"scene": fingerprint(coarser(short)), "gave up": "no equilibrium"}
+    left = {"scene": fingerprint(coarser_scene(short)), "gave up": "no equilibrium"}
     (tmp_path / FILE).write_text(json.dumps(left))
-    summary = run_stated(short, out=tmp_path, figures=False).summary
+    summary = run_with_coarser_runs(short, out=tmp_path, figures=False).summary
     assert summary["status"] == "completed"
     assert summary["warnings"] == ["the coarser run gave up: no equilibrium; the error of the mesh is not known"]
     assert "peak pressure [-]" not in summary["error estimates"]
@@ -284,7 +285,7 @@ def test_figures_are_drawn_half_by_the_worker_or_else_all_here(tmp_path, monkeyp
     if not there:
         worker.end()
     without_companions(part, tmp_path)
-    run_stated(part, out=tmp_path, worker=worker)
+    run_with_coarser_runs(part, out=tmp_path, worker=worker)
     pictures = {tmp_path / f"{name}.png" for name in ("section", "profiles", "peak_pressure", "history")}
     (here,) = drawn
     assert tmp_path / "profiles.png" in here

@@ -10,7 +10,7 @@ from ngwear.error_estimates.cost_table import as_dict, table
 from ngwear.error_estimates.cost_text import paragraph
 from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement
 from ngwear.error_estimates.pareto_front import cheapest, pareto_front, power_law, product_seconds
-from ngwear.error_estimates.settings_search import climb, confirm
+from ngwear.error_estimates.settings_search import confirm, run_ladders
 from ngwear.errors import SceneError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
 
@@ -18,13 +18,14 @@ DEPTH = "maximum depth [mm]"
 LIMIT, MESH_ERROR, JUMP_ERROR = 1.0, 2.0, 0.1
 
 
-def ladder(name, values, own, growth=1.0, **more):
+def ladder(name, values, own, cost_exponent=1.0, **more):
     labels = tuple(f"{name} {value:g}" for value in values)
-    return Ladder(name=name, column=f"{name} [-]", values=values, labels=labels, own=own, growth=growth, **more)
+    more |= {"own": own, "cost_exponent": cost_exponent}
+    return Ladder(name=name, column=f"{name} [-]", values=values, labels=labels, **more)
 
 
-EDGE = ladder("edge", (0.4, 0.2, 0.1, 0.05, 0.025), 2, growth=1.0)
-JUMP = ladder("jump", (0.32, 0.08, 0.02, 0.005, 0.0), 2, growth=0.5, most_solves=200)
+EDGE = ladder("edge", (0.4, 0.2, 0.1, 0.05, 0.025), 2, cost_exponent=1.0)
+JUMP = ladder("jump", (0.32, 0.08, 0.02, 0.005, 0.0), 2, cost_exponent=0.5, most_solves=200)
 LADDERS = (EDGE, JUMP)
 
 
@@ -50,7 +51,7 @@ class Fake:
 
 def study_of(budget, **how):
     fake = Fake(**how)
-    study = climb(LADDERS, DEPTH, budget, fake)
+    study = run_ladders(LADDERS, DEPTH, budget, fake)
     return study, confirm(study, budget, fake), fake
 
 
@@ -92,10 +93,10 @@ def test_seconds_by_power_law():
 def test_cheapest_combination_by_hand():
     error = {(0, 0): 0.3, (0, 1): 0.2, (1, 0): 0.04, (1, 1): 0.03}
     seconds = {(0, 0): 1.0, (0, 1): 2.0, (1, 0): 3.0, (1, 1): 3.1}
-    rungs = ((0, 1), (0, 1))
+    levels = ((0, 1), (0, 1))
 
     def choose(target, **how):
-        return cheapest(target, rungs, error.__getitem__, seconds.__getitem__, **how)
+        return cheapest(target, levels, error.__getitem__, seconds.__getitem__, **how)
 
     assert choose(0.25) == (0, 1)
     assert choose(0.05) == (1, 1), "hardly longer and more accurate"
@@ -109,8 +110,8 @@ def test_cheapest_combination_by_hand():
 def test_ample_budget_climbs_everything_and_finds_errors_and_orders():
     study, choices, fake = study_of(1000.0)
     assert len(fake.asked) == len(set(fake.asked)), "no run twice"
-    assert set(study.rungs(0)) == set(range(5))
-    assert set(study.rungs(1)) == set(range(5))
+    assert set(study.levels(0)) == set(range(5))
+    assert set(study.levels(1)) == set(range(5))
     assert not study.left_out
     assert study.order(0, DEPTH) == pytest.approx(2.0, rel=1e-6)
     assert study.order(1, DEPTH) == pytest.approx(1.0, rel=1e-6)
@@ -135,8 +136,8 @@ def test_a_coarse_rung_near_the_reference_by_chance_is_not_believed():
         run = Fake()(setting, left)
         return replace(run, values={DEPTH: LIMIT}) if setting == (0, 2) else run
 
-    study = climb(LADDERS, DEPTH, 1000.0, lucky)
-    assert study.rung_error(0, 0, DEPTH) < study.rung_error(0, 1, DEPTH)
+    study = run_ladders(LADDERS, DEPTH, 1000.0, lucky)
+    assert study.level_error(0, 0, DEPTH) < study.level_error(0, 1, DEPTH)
     assert study.part(0, 0, DEPTH) == study.part(0, 1, DEPTH) > study.part(0, 2, DEPTH)
 
 
@@ -145,8 +146,8 @@ def test_jumps_that_are_single_strokes_already_are_not_refined_further():
         run = Fake()(setting, left)
         return replace(run, solves=210) if setting[1] >= 2 else run
 
-    study = climb(LADDERS, DEPTH, 1000.0, short)
-    assert set(study.rungs(1)) == {0, 1, 2, 4}
+    study = run_ladders(LADDERS, DEPTH, 1000.0, short)
+    assert set(study.levels(1)) == {0, 1, 2, 4}
 
 
 def test_front_holds_no_run_that_another_beats():
@@ -185,26 +186,30 @@ def test_tiny_budget_runs_what_it_can_and_promises_nothing():
 def test_scene_is_tried_on_the_coarsest_mesh_if_the_coarser_one_is_too_slow():
     study, _, fake = study_of(0.7)
     assert fake.asked == [(1, 2), (0, 2)]
-    assert set(study.rungs(0)) == {0}
+    assert set(study.levels(0)) == {0}
 
 
 def test_too_small_a_budget_says_what_it_would_take():
     with pytest.raises(SceneError, match=r"on a mesh of edge 0.4 it takes about 25 s; give 250 s or more"):
-        climb(LADDERS, DEPTH, 1.0, Fake(slow=100.0))
+        run_ladders(LADDERS, DEPTH, 1.0, Fake(slow=100.0))
 
     def unknown(setting, left):
         return Measurement(status=STOPPED, wall=left)
 
-    with pytest.raises(SceneError, match="takes more than 30 s, as a run of 30 s beyond the budget tells; give many"):
-        climb(LADDERS, DEPTH, 1.0, unknown)
+    with pytest.raises(
+        SceneError, match=r"takes more than 30 s \(measured by a run of 30 s beyond the budget\); give many"
+    ):
+        run_ladders(LADDERS, DEPTH, 1.0, unknown)
 
     def seen_later(setting, left):
         if left < 7.0:
             return unknown(setting, left)
         return Measurement(status=COMPLETED, values={DEPTH: 1.0}, wall=7.0)
 
-    with pytest.raises(SceneError, match="takes about 7 s, as a run of 7 s beyond the budget tells; give 70 s or more"):
-        climb(LADDERS, DEPTH, 1.0, seen_later)
+    with pytest.raises(
+        SceneError, match=r"takes about 7 s \(measured by a run of 7 s beyond the budget\); give 70 s or more"
+    ):
+        run_ladders(LADDERS, DEPTH, 1.0, seen_later)
 
 
 def test_base_on_a_coarser_mesh_is_told():
@@ -216,7 +221,7 @@ def test_base_on_a_coarser_mesh_is_told():
 
 
 def test_a_ladder_that_begins_with_the_scenes_own_rung_is_climbed_first():
-    """Else a partial budget would tell nothing: all finer rungs are dearer than coarse ones of other ladders."""
+    """Else a partial budget would tell nothing: all finer levels are dearer than coarse ones of other ladders."""
     step = ladder("time step", (1.0, 0.5, 0.25), 0)
     fake = Fake()
 
@@ -226,9 +231,9 @@ def test_a_ladder_that_begins_with_the_scenes_own_rung_is_climbed_first():
         values = {DEPTH: run.values[DEPTH] + 0.01 * times}
         return replace(run, wall=run.wall / times, cpu=run.cpu / times, values=values)
 
-    study = climb((*LADDERS, step), DEPTH, 9.0, with_steps)
+    study = run_ladders((*LADDERS, step), DEPTH, 9.0, with_steps)
     assert list(study.runs)[2] == (*study.base[:2], 1), "after the scene on two meshes"
-    assert len(study.rungs(2)) == 2
+    assert len(study.levels(2)) == 2
     assert study.left_out
     assert math.isfinite(study.predicted_error(study.base, DEPTH))
 
@@ -241,13 +246,13 @@ def test_same_measurements_same_plan():
 
 def test_a_rung_that_gives_up_does_not_lose_the_others():
     study, choices, _ = study_of(1000.0, breaks={(0, 2), (2, 0), (4, 2)})
-    assert set(study.rungs(0)) == {1, 2, 3}
-    assert set(study.rungs(1)) == {1, 2, 3, 4}
+    assert set(study.levels(0)) == {1, 2, 3}
+    assert set(study.levels(1)) == {1, 2, 3, 4}
     assert choices[0].measured
     text = paragraph("block", study, choices, 1000.0)
     assert "With edge 0.4, and with jump 0.32, and with edge 0.025 it gave up: no equilibrium." in text
     assert [row["reason [-]"] for row in table(study)].count("no equilibrium") == 3
-    assert math.isinf(study.part(0, 0, DEPTH)), "nothing is known of a rung that gave up below the finest"
+    assert math.isinf(study.part(0, 0, DEPTH)), "nothing is known of a level that gave up below the finest"
 
 
 def test_settings_that_give_up_alike_are_told_by_what_they_have_in_common():
@@ -261,7 +266,7 @@ def test_settings_that_give_up_alike_are_told_by_what_they_have_in_common():
 
 def test_measured_error_beyond_the_target_gives_way():
     ladders, first = (replace(EDGE, own=4), JUMP), (2, 1)
-    study = climb(ladders, DEPTH, 1000.0, Fake())
+    study = run_ladders(ladders, DEPTH, 1000.0, Fake())
     assert confirm(study, 1000.0, Fake())[0].setting == first, "changes both parameters"
 
     def couples(setting, left):
@@ -269,7 +274,7 @@ def test_measured_error_beyond_the_target_gives_way():
         run = Fake()(setting, left)
         return replace(run, values={DEPTH: run.values[DEPTH] + 0.5 * (setting == first)})
 
-    study = climb(ladders, DEPTH, 1000.0, couples)
+    study = run_ladders(ladders, DEPTH, 1000.0, couples)
     choice = confirm(study, 1000.0, couples)[0]
     assert first in study.runs, "was tried, as the sum of the single errors promised"
     assert choice.setting != first
@@ -282,7 +287,7 @@ def test_errors_that_do_not_add_up_show_in_the_finest_run():
         run = Fake()(setting, left)
         return replace(run, values={DEPTH: run.values[DEPTH] + 0.02 * (setting == (4, 4))})
 
-    study = climb(LADDERS, DEPTH, 1000.0, couples)
+    study = run_ladders(LADDERS, DEPTH, 1000.0, couples)
     choices = confirm(study, 1000.0, couples)
     assert study.finest in study.runs
     assert study.error(study.own, DEPTH) == pytest.approx(0.02, rel=0.2)

@@ -1,4 +1,4 @@
-"""Cost studies of real, tiny scenes: knobs, files, resumption, the command line."""
+"""Cost studies of real, tiny scenes: parameters, files, resumption, the command line."""
 
 import csv
 import io
@@ -16,11 +16,11 @@ import pytest
 from conftest import REMEMBERS
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
-from ngwear.error_estimates import settings as knobs_of
+from ngwear.error_estimates import settings as settings_module
 from ngwear.error_estimates.cost import CSV, JSON, PNG, RUNS, cost
 from ngwear.error_estimates.cost_runs import NO_TIME, Limited, Point, _clock, _timed, measure
 from ngwear.error_estimates.ladder import STOPPED, Measurement
-from ngwear.error_estimates.settings import at, knobs
+from ngwear.error_estimates.settings import parameters, with_setting
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.loop import stepper
 from ngwear.parallel.sweep import sweep
@@ -52,26 +52,26 @@ column = 0.5
 reach = 2.5
 beside = 2.0
 """
-AMPLE = 300.0  # seconds, some ten times what the few rungs take
+AMPLE = 300.0  # seconds, some ten times what the few levels take
 
 
 def names(scene):
-    return [knob.ladder.name for knob in knobs(scene)]
+    return [parameter.ladder.name for parameter in parameters(scene)]
 
 
-def few_rungs(patch):
-    patch.setattr(knobs_of, "MESH", (2.0, 1.0))
-    patch.setattr(knobs_of, "JUMPS", (1.0,))
-    patch.setattr(knobs_of, "STRESS", (2.0, 1.0))
+def few_levels(patch):
+    patch.setattr(settings_module, "MESH", (2.0, 1.0))
+    patch.setattr(settings_module, "JUMPS", (1.0,))
+    patch.setattr(settings_module, "STRESS", (2.0, 1.0))
 
 
 @pytest.fixture(scope="module")
 def studied(tmp_path_factory, write_sheet):
-    """A study of a few rungs, and its scene's file."""
+    """A study of a few levels, and its scene's file."""
     folder = tmp_path_factory.mktemp("cost")
     file = write_sheet(folder, *JUMPS, *COARSE)
     with pytest.MonkeyPatch.context() as patch:
-        few_rungs(patch)
+        few_levels(patch)
         found = cost(read_scene(file), budget=AMPLE, folder=folder / "out")
     return found, folder / "out", file
 
@@ -110,34 +110,34 @@ def test_increments_of_the_load_are_no_knob(monkeypatch):
 
 
 def test_rungs_change_their_knob_and_nothing_else(seal):
-    mesh, jump, stress, order = knobs(seal)
-    for knob in (mesh, jump, stress, order):
-        values = knob.ladder.values
+    mesh, jump, stress, order = parameters(seal)
+    for parameter in (mesh, jump, stress, order):
+        values = parameter.ladder.values
         assert list(values) == sorted(values, reverse=True)
-        assert at(seal, [knob], (knob.ladder.own,)) is seal
-    fine = at(seal, [mesh], (mesh.ladder.own + 1,))
+        assert with_setting(seal, [parameter], (parameter.ladder.own,)) is seal
+    fine = with_setting(seal, [mesh], (mesh.ladder.own + 1,))
     assert fine.accuracy == replace(seal.accuracy, patch=0.005, coarse=0.1)
-    coarse = at(seal, [mesh], (mesh.ladder.own - 2,))
+    coarse = with_setting(seal, [mesh], (mesh.ladder.own - 2,))
     assert coarse.accuracy == replace(seal.accuracy, patch=0.04, coarse=0.8, mounting=0.04)
-    each = at(seal, [jump], (len(jump.ladder.values) - 1,))
+    each = with_setting(seal, [jump], (len(jump.ladder.values) - 1,))
     assert (each.wear.step, each.accuracy) == ("each", seal.accuracy)
-    assert at(each, [knobs(each)[1]], (0,)).wear.step == "jump"
+    assert with_setting(each, [parameters(each)[1]], (0,)).wear.step == "jump"
 
 
 def test_orders_are_told_by_their_names_and_keep_the_elements(seal, tmp_path, write_sheet):
-    order = knobs(seal)[-1]
+    order = parameters(seal)[-1]
     assert order.ladder.labels == ("order 1", "order 2", "order 3")
-    linear, cubic = (at(seal, [order], (i,)).accuracy for i in (0, 2))
+    linear, cubic = (with_setting(seal, [order], (i,)).accuracy for i in (0, 2))
     assert (linear.order, linear.stress_error) == (1, pytest.approx(seal.accuracy.stress_error**0.5))
     assert (cubic.order, cubic.stress_error) == (3, pytest.approx(seal.accuracy.stress_error**1.5))
     sticking = read_scene(write_sheet(tmp_path, ("force = 0.5", "force = 0.5\nsticks = true")))
-    assert knobs(sticking)[-1].ladder.labels == ("order 2", "order 3")
+    assert parameters(sticking)[-1].ladder.labels == ("order 2", "order 3")
 
 
 def test_arms_are_told_apart_by_what_is_kept(tmp_path, write_sheet):
     scene = read_scene(write_sheet(tmp_path, *REMEMBERS))
-    arms = knobs(scene)[-1]
-    kept = [at(scene, [arms], (i,)).folding.kept.times for i in range(len(arms.ladder.values))]
+    arms = parameters(scene)[-1]
+    kept = [with_setting(scene, [arms], (i,)).folding.kept.times for i in range(len(arms.ladder.values))]
     assert len(set(kept)) == len(kept)
     assert [len(k) for k in kept] == sorted(len(k) for k in kept)
     assert len(kept[-1]) == len(scene.part.prony.times)
@@ -147,10 +147,10 @@ def test_knobs_of_a_pin(tmp_path):
     file = tmp_path / "scene.toml"
     file.write_text(PIN, encoding="utf-8")
     scene = read_scene(file)
-    mesh, column, block, arms = knobs(scene)
-    assert at(scene, [mesh], (0,)).mesh == replace(scene.mesh, patch=2.0, coarse=6.0)
-    assert at(scene, [column], (len(column.ladder.values) - 1,)).mesh == replace(scene.mesh, column=0.125)
-    large = at(scene, [block], (len(block.ladder.values) - 1,)).mesh
+    mesh, column, block, arms = parameters(scene)
+    assert with_setting(scene, [mesh], (0,)).mesh == replace(scene.mesh, patch=2.0, coarse=6.0)
+    assert with_setting(scene, [column], (len(column.ladder.values) - 1,)).mesh == replace(scene.mesh, column=0.125)
+    large = with_setting(scene, [block], (len(block.ladder.values) - 1,)).mesh
     assert large.reach / scene.mesh.reach == pytest.approx(large.beside / scene.mesh.beside)
     assert large.beside * scene.pin.thickness < scene.pin.track_radius, "the block ends before the track's centre"
     assert arms.ladder.labels == ("1 arm", "2 arms"), "steady sliding needs one"
@@ -169,25 +169,25 @@ def test_files_of_a_study(studied):
     assert {q.split(" [")[0] for q in found.study.quantities} == {
         *("maximum depth", "worn area", "peak pressure", "roller contact width", "roller friction force")
     }
-    rungs = [run for k in range(len(found.study.ladders)) for run in found.study.rungs(k).values()]
-    force = [run.values["roller friction force [N/mm]"] for run in rungs]  # choices, too, are run: which, seconds tell
+    levels = [run for k in range(len(found.study.ladders)) for run in found.study.levels(k).values()]
+    force = [run.values["roller friction force [N/mm]"] for run in levels]  # choices, too, are run: which, seconds tell
     assert force == pytest.approx([0.05] * len(force), rel=1e-3), "mu F"
 
 
 def test_errors_are_against_each_ladders_finest_run(studied):
     study = studied[0].study
     for k, ladder in enumerate(study.ladders):
-        rungs = study.rungs(k)
-        finest = rungs[max(rungs)].values[study.main]
-        for i, run in rungs.items():
-            assert study.rung_error(k, i, study.main) == abs(run.values[study.main] - finest) / finest
-        assert max(rungs) == len(ladder.values) - 1, "the budget is ample"
+        levels = study.levels(k)
+        finest = levels[max(levels)].values[study.main]
+        for i, run in levels.items():
+            assert study.level_error(k, i, study.main) == abs(run.values[study.main] - finest) / finest
+        assert max(levels) == len(ladder.values) - 1, "the budget is ample"
     assert study.own_error(1, study.main) == 0.0, "each stroke solved"
 
 
 def test_second_call_runs_nothing_and_finds_the_same(studied, monkeypatch):
     found, out, file = studied
-    few_rungs(monkeypatch)
+    few_levels(monkeypatch)
     before = {p.name: p.stat().st_mtime_ns for p in (out / RUNS).iterdir()}
     monkeypatch.setattr(Limited, "submit", lambda *_: pytest.fail("a run was begun"))
     again = cost(read_scene(file), budget=AMPLE, folder=out, figures=False)
@@ -200,7 +200,7 @@ def test_a_study_that_was_killed_goes_on(studied, monkeypatch, tmp_path):
     import shutil
 
     found, out, file = studied
-    few_rungs(monkeypatch)
+    few_levels(monkeypatch)
     folder = tmp_path / "out"
     shutil.copytree(out, folder)
     lost = sorted((folder / RUNS).glob("*.npz"))[0]
@@ -342,8 +342,8 @@ def test_command_line_refuses_in_one_line(sheet_file, capsys, tmp_path):
 
 
 def test_command_line_when_every_rung_gives_up(tmp_path, write_sheet, monkeypatch, capsys):
-    few_rungs(monkeypatch)
-    monkeypatch.setattr(knobs_of, "STRESS", (1.0,))
+    few_levels(monkeypatch)
+    monkeypatch.setattr(settings_module, "STRESS", (1.0,))
     file = write_sheet(tmp_path, ("force = 0.5", "force = 500"), ("strokes = 4", "strokes = 1"), *COARSE)
     assert main(["cost", str(file), "--budget", str(AMPLE), "--quiet"]) == GAVE_UP
     assert "no equilibrium" in capsys.readouterr().err
@@ -351,7 +351,7 @@ def test_command_line_when_every_rung_gives_up(tmp_path, write_sheet, monkeypatc
 
 def test_json_on_the_command_line(studied, monkeypatch, capsys):
     found, out, file = studied
-    few_rungs(monkeypatch)
+    few_levels(monkeypatch)
     assert main(["cost", str(file), "--budget", str(AMPLE), "--out", str(out), "--json", "--quiet"]) == OK
     told = json.loads(capsys.readouterr().out)
     assert told == json.loads(json.dumps(found.as_dict()))

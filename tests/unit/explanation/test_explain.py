@@ -138,7 +138,7 @@ def test_friction_and_wear_are_weighed_where_they_are_absent(told):
 
 def test_a_part_that_cannot_be_mounted_is_still_explained(told):
     found = told(('[[support]]\nedges = ["bottom"]\n', ""))
-    assert "no contact pressure to judge by" in found["absent"]["adhesion"]["verdict"]
+    assert "the contact pressure is not known" in found["absent"]["adhesion"]["verdict"]
     assert found["absent"]["adhesion"]["matters"] is None
     assert found["unknowns"]["hyperelasticity"] > 0
 

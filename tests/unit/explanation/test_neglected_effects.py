@@ -109,7 +109,7 @@ def test_onset():
 def test_assumed_constants_can_be_replaced():
     assumed = Assumed().replaced(["oil_viscosity=1e-7", "roughness=0.001"])
     assert (assumed.oil_viscosity, assumed.roughness) == (1e-7, 1e-3)
-    assert assumed.told()["oil: dynamic viscosity [Pa s]"] == pytest.approx(0.1)
+    assert assumed.in_data_sheet_units()["oil: dynamic viscosity [Pa s]"] == pytest.approx(0.1)
     assert Assumed(counter_conductivity=15.0, counter_heat_capacity=4.0).counter_diffusivity == 3.75
     for change, place in (("oil=1", "unknown constant"), ("roughness=", "a number"), ("roughness=0", "than 0")):
         with pytest.raises(SceneError, match=place):

@@ -130,11 +130,11 @@ def test_what_tires_an_element_is_its_own_stress():
     assert not (np.sort(body.numbers) == body.numbers).all(), "otherwise nothing is tested"
     pull(state, "top", 0.1)
     state.fatigue, state.strained = np.zeros(len(cells.fate)), np.zeros(len(cells.fate))
-    lost_elements.tire(state, 1, last=False)
+    lost_elements.add_fatigue(state, 1, last=False)
     stress = lost_elements.loaded(state.stage)["stress xx, yy, xy [MPa]"]
     np.testing.assert_allclose(state.strained, damage.exhaustion(Stresses(stress, np.zeros(len(stress)))), rtol=1e-12)
     assert not state.fatigue.any()
-    lost_elements.tire(state, 3, last=True)
+    lost_elements.add_fatigue(state, 3, last=True)
     np.testing.assert_allclose(
         state.fatigue, 3 * damage.exhaustion(Stresses(stress, np.zeros(len(stress)))), rtol=1e-12
     )
@@ -187,7 +187,7 @@ def test_what_is_left_keeps_its_state():
 
     before = displaced()
     dead = np.arange(24) == 12  # at the left side, in the third row
-    lost_elements.lose(state, state.stage.body.now, dead, Fate.TORN)
+    lost_elements.deactivate(state, state.stage.body.now, dead, Fate.TORN)
     after = displaced()
     assert len(after) == len(before)
     assert all(after[point] == before[point] for point in after)

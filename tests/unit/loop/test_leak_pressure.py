@@ -10,7 +10,7 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance
-from ngwear.error_estimates.coarser_runs import stated
+from ngwear.error_estimates.coarser_runs import combined_errors
 from ngwear.error_estimates.cost import cost
 from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.error_estimates.run_to_error import at_level
@@ -20,7 +20,7 @@ from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.plots.wear import history_figure
-from ngwear.results.quantities_of_interest import LEAKS, reading
+from ngwear.results.quantities_of_interest import LEAKS, quantities
 from ngwear.results.recorder import LEAK, Recorder
 from ngwear.results.result_file import read_result
 from ngwear.scene.boundary import Fluid
@@ -83,10 +83,10 @@ def test_series_summary_and_study_tell_what_the_seal_holds(block):
 
 def test_its_error_is_stated_and_drawn(block):
     folder, result = block
-    read = reading(result.recorder.rows)
+    read = quantities(result.recorder.rows)
     assert set(read[LEAKS]) == {f"{p:g} MPa: {LEAK}" for p in PRESSURES}
     other = {**read, LEAKS: {kind: (1.02 * np.array(values)).tolist() for kind, values in read[LEAKS].items()}}
-    errors = stated(scene(), result.summary["error estimates"], read, other)
+    errors = combined_errors(scene(), result.summary["error estimates"], read, other)
     assert errors[LEAKS] == pytest.approx(0.02)
     file = read_result(folder)
     pressures = history_figure(replace(file, errors=errors)).axes[-1]
@@ -110,7 +110,7 @@ def test_where_it_is_not_asked_for_there_is_none(fluid):
     dry = Program(cycle=(Stroke(name="still", travel=1.0),), strokes=1)
     result = run(replace(scene(), fluid=fluid, program=dry), figures=False)
     assert not [name for name in (*result.recorder.rows[-1], *result.summary) if "leak pressure" in name]
-    assert LEAKS not in reading(result.recorder.rows)
+    assert LEAKS not in quantities(result.recorder.rows)
 
 
 def test_meshes_are_fine_where_the_fluid_meets_a_contact_that_is_not_followed():

@@ -13,7 +13,7 @@ from ngwear.laws.damage import Fatigue, MaximumPrincipalStress, Stresses, Tensil
 from ngwear.loop import lost_elements
 from ngwear.loop.run import GAVE_UP, run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wear_step import Wearing
+from ngwear.loop.wear_step import WearStep
 from ngwear.materials import NeoHooke
 from ngwear.scene.boundary import Support
 from ngwear.scene.deactivation import Deactivation, DistortionFilter
@@ -142,13 +142,13 @@ def test_a_part_torn_off_its_support_is_reported():
     damage = MaximumPrincipalStress(critical=1.0)
     state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), damage)
     with pytest.raises(GeometryError, match=r"held or loaded by nothing: nothing of the edges \['bottom'\] is left"):
-        lost_elements.lose(state, BLOCK, np.arange(24) < 6, Fate.TORN)
+        lost_elements.deactivate(state, BLOCK, np.arange(24) < 6, Fate.TORN)
 
 
 def test_a_support_of_which_something_is_left_holds_only_there():
     damage = MaximumPrincipalStress(critical=1.0)
     state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), damage)
-    lost_elements.lose(state, BLOCK, np.arange(24) < 4, Fate.TORN)
+    lost_elements.deactivate(state, BLOCK, np.arange(24) < 4, Fate.TORN)
     contour = state.contour
     on = contour.on(("bottom",))
     assert contour.lengths[on].sum() == pytest.approx(1.0)
@@ -197,7 +197,7 @@ def test_what_a_wall_gains_or_loses_as_its_ends_are_merged_is_in_the_book(sinks)
     state = held(pit, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), NOTHING)
     outline, points = state.contour, state.contour.points.copy()
     points[(points[:, 1] == 2.0) & np.isin(points[:, 0], (1.0, 1.5)), 1] -= sinks
-    lost_elements.follow(state, outline, points)
+    lost_elements.move_surface(state, outline, points)
     lost = sum(state.ledger.lost.values())
     merged = len(state.contour) < len(outline)
     assert merged == (sinks > 0.4)
@@ -214,7 +214,7 @@ def test_wear_that_reaches_a_hole_opens_it(places):
     state = held(holed, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), NOTHING)
     outline, points = state.contour, state.contour.points.copy()
     points[(points[:, 1] == 2.0) & np.isin(points[:, 0], places), 1] -= 0.45
-    lost_elements.follow(state, outline, points)
+    lost_elements.move_surface(state, outline, points)
     lost = sum(state.ledger.lost.values())
     assert len(state.cells.holes()) == 0
     assert holed.area - state.cells.area == pytest.approx(outline.area - polygon_area(points) + lost, rel=1e-12)
@@ -278,14 +278,14 @@ def test_resumed_fatigue_goes_on_where_it_was(tmp_path):
 @pytest.mark.parametrize("stroke", [3, 4])
 def test_a_cycle_that_is_taken_back_has_tired_nothing(monkeypatch, stroke):
     tiring = on_large_elements(scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0)))
-    real = Wearing.take
+    real = WearStep.apply
 
     def take(self):
         if self.state.strokes == stroke:
             raise MeshError("too much")
         return real(self)
 
-    monkeypatch.setattr(Wearing, "take", take)
+    monkeypatch.setattr(WearStep, "apply", take)
     result = run(tiring, throw=False, figures=False)
     assert result.status == GAVE_UP
     assert result.state.strokes == 2

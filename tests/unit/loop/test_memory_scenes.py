@@ -14,7 +14,7 @@ from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wear_step import Wearing
+from ngwear.loop.wear_step import WearStep
 from ngwear.materials import WLF, NeoHooke, PronySeries, Stiffened
 from ngwear.materials.library import filled_rubber
 from ngwear.scene.boundary import Support
@@ -263,7 +263,7 @@ def test_rejected_step_leaves_the_memory_alone(remembering, monkeypatch):
     def fail(*_, **__):
         raise ConvergenceError("for the test")
 
-    monkeypatch.setattr(Wearing, "take", fail)
+    monkeypatch.setattr(WearStep, "apply", fail)
     with pytest.raises(ConvergenceError):
         stepper.advance(state)
     assert (state.memory.relaxed == relaxed).all()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.loop.refinement import LEAST, NARROWEST, NEAR, contact_sizes, element_edges, outgrown, wanted_size
+from ngwear.loop.refinement import LEAST, NARROWEST, NEAR, contact_sizes, element_edges, is_too_coarse, required_sizes
 from ngwear.loop.stepper import Stepper
 from ngwear.scene.accuracy import Accuracy
 
@@ -21,13 +21,13 @@ def started(sheet):
 def test_a_contact_asks_for_the_patch(started):
     state = started(stress_error=1.0)
     stage, phases = state.stage, [p.vector for p in state.phases]
-    field = wanted_size(stage, phases)
+    field = required_sizes(stage, phases)
     profile = state.reports[0].contacts["roller"]
     middle = profile.reference[np.argmax(profile.pressure)]
     patch = stage.scene.accuracy.patch
     assert field(middle)[0] == pytest.approx(patch)
     assert field(np.array([[0.1, 0.1]]))[0] > 1.5 * patch
-    assert not outgrown(stage, phases)
+    assert not is_too_coarse(stage, phases)
 
 
 def test_stresses_ask_for_more_where_they_are_worst(started):
@@ -36,10 +36,10 @@ def test_stresses_ask_for_more_where_they_are_worst(started):
     stage, phases = state.stage, [p.vector for p in state.phases]
     tight = replace(stage.scene, accuracy=replace(stage.scene.accuracy, stress_error=0.01))
     stage.scene = tight
-    seeds = wanted_size(stage, phases).seeds
+    seeds = required_sizes(stage, phases).seeds
     away = seeds[np.abs(seeds[:, 1] - 2.0) > 1e-9]
     assert len(away) > 0
-    assert outgrown(stage, phases)
+    assert is_too_coarse(stage, phases)
     assert started(stress_error=0.01).stage.body.mesh.ne > 1.3 * stage.body.mesh.ne
 
 
@@ -118,7 +118,7 @@ def test_elements_across_are_counted_in_each_zone(sheet):
 def test_a_tolerance_of_one_asks_for_nothing(started):
     state = started(stress_error=1.0)
     stage, phases = state.stage, [p.vector for p in state.phases]
-    assert wanted_size(stage, phases).seeds == pytest.approx(contact_sizes(stage, phases).seeds)
+    assert required_sizes(stage, phases).seeds == pytest.approx(contact_sizes(stage, phases).seeds)
 
 
 def test_gaps_count_as_far_as_wear_may_still_close_them(started):

@@ -22,7 +22,7 @@ from ngwear.loop import stepper
 from ngwear.loop.checkpoint import load
 from ngwear.loop.run import COMPLETED, GAVE_UP, run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wear_step import Wearing
+from ngwear.loop.wear_step import WearStep
 from ngwear.results.recorder import Folder
 from ngwear.scene.options import Save
 from ngwear.scene.read_scene import read_scene
@@ -474,7 +474,7 @@ def test_giving_up_raises_if_asked_to_and_saves_before(tmp_path, sheet, monkeypa
 def test_failed_jump_is_taken_back_and_halved(tmp_path, write_sheet, monkeypatch, caplog):
     """A step that fails once leaves no trace but a retry."""
     scene = read_scene(jumping(tmp_path, write_sheet))
-    real, failed = Wearing.take, []
+    real, failed = WearStep.apply, []
 
     def take(self):
         if self.sliding.distance > 10 and not failed:
@@ -483,7 +483,7 @@ def test_failed_jump_is_taken_back_and_halved(tmp_path, write_sheet, monkeypatch
             raise GeometryError("made to fail")
         return real(self)
 
-    monkeypatch.setattr(Wearing, "take", take)
+    monkeypatch.setattr(WearStep, "apply", take)
     with caplog.at_level(logging.INFO):
         result = run(scene, figures=False)
     assert failed

@@ -157,7 +157,7 @@ def test_section_without_equilibrium_is_left_out(tmp_path, sheet, monkeypatch):
         raise ConvergenceError("on purpose")
 
     monkeypatch.setattr(Stepper, "advance", fails)
-    monkeypatch.setattr(Stepper, "look_ahead", fails)
+    monkeypatch.setattr(Stepper, "solve_next_cycle", fails)
     result = run(sheet, out=tmp_path / "out", figures=False, throw=False)
     assert result.status == GAVE_UP
     assert [s.stroke for s in KeptSections.of(read_result(tmp_path / "out")).snapshots] == [0]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ngwear.loop.slip_over_cycles import lasting
+from ngwear.loop.slip_over_cycles import slip_per_cycle
 from ngwear.loop.state import Phase
 from ngwear.scene.program import Stroke
 
@@ -13,8 +13,8 @@ BOTH = [Phase(np.zeros(1), shares={"rod": OWN}), Phase(np.zeros(1), shares={"rod
 
 
 def test_what_one_stroke_slips_more_than_the_other_counts_once():
-    assert lasting((OUT, BACK), BOTH, 0, 10)["rod"] * 10 == pytest.approx([0.0, 0.2, 9 * 0.4 + 0.5])
-    assert lasting((OUT, BACK), BOTH, 1, 10)["rod"] * 10 == pytest.approx([0.1, 0.0, 10 * 0.4])
+    assert slip_per_cycle((OUT, BACK), BOTH, 0, 10)["rod"] * 10 == pytest.approx([0.0, 0.2, 9 * 0.4 + 0.5])
+    assert slip_per_cycle((OUT, BACK), BOTH, 1, 10)["rod"] * 10 == pytest.approx([0.1, 0.0, 10 * 0.4])
 
 
 @pytest.mark.parametrize(
@@ -22,9 +22,9 @@ def test_what_one_stroke_slips_more_than_the_other_counts_once():
     [((OUT, BACK), 1), ((OUT, OUT), 10), ((OUT, Stroke(name="back", travel=1.0, direction=-1)), 10), ((OUT,), 10)],
 )
 def test_single_strokes_and_motions_that_do_not_come_back_are_taken_as_they_are(cycle, repeats):
-    assert lasting(cycle, BOTH, 0, repeats)["rod"].tolist() == OWN.tolist()
+    assert slip_per_cycle(cycle, BOTH, 0, repeats)["rod"].tolist() == OWN.tolist()
 
 
 def test_nothing_is_known_of_a_contact_that_slides_or_of_a_new_mesh():
-    assert lasting((OUT, BACK), [Phase(np.zeros(1)), BOTH[1]], 0, 10) is None
-    assert lasting((OUT, BACK), [BOTH[0], Phase(np.zeros(1))], 0, 10)["rod"].tolist() == OWN.tolist()
+    assert slip_per_cycle((OUT, BACK), [Phase(np.zeros(1)), BOTH[1]], 0, 10) is None
+    assert slip_per_cycle((OUT, BACK), [BOTH[0], Phase(np.zeros(1))], 0, 10)["rod"].tolist() == OWN.tolist()

@@ -11,16 +11,16 @@ import pytest
 from conftest import REMEMBERS, _write_sheet
 
 from ngwear.error_estimates import run_to_error as module
-from ngwear.error_estimates.coarser_runs import stated
+from ngwear.error_estimates.coarser_runs import combined_errors
 from ngwear.error_estimates.run_to_error import ACROSS, PARTS, next_level, next_parts, run_to_error
-from ngwear.error_estimates.settings import at, changes, knobs
+from ngwear.error_estimates.settings import changes, parameters, with_setting
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.explanation.explain import explain
 from ngwear.loop import time_step_error
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.time_step_error import ahead, in_halves, time_step_errors
-from ngwear.results.quantities_of_interest import AREA, BY_TIME_STEP, DEPTH, FRICTION, PEAK, reading
+from ngwear.loop.time_step_error import in_halves, next_cycle, time_step_errors
+from ngwear.results.quantities_of_interest import AREA, BY_TIME_STEP, DEPTH, FRICTION, PEAK, quantities
 from ngwear.results.result_file import read_result
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.accuracy import Accuracy
@@ -72,7 +72,7 @@ def in_sixteenths(finished):
     finer = finished.state
     for _ in range(4):
         finer = in_halves(finer)
-    whole, exact = ahead(finished.state), ahead(finer)
+    whole, exact = next_cycle(finished.state), next_cycle(finer)
     Stepper(finished.state.stage.scene).stand(finished.state)
     deepest = time_step_error._deepest(whole)
     return [time_step_error._read(seen, deepest) for seen in (whole, exact)]
@@ -161,12 +161,12 @@ def test_files_count_strokes_as_they_were_given(tmp_path, creeping):
 
 def test_readings_of_parts_are_their_means(creeping, finished):
     rows = run(in_parts(creeping, 2), figures=False).recorder.rows
-    read = reading(rows)
+    read = quantities(rows)
     (column, mean), *_ = read[PEAK].items()
     assert column == "forth: roller peak pressure [MPa]"
     last = [row for row in rows if row["kind [-]"].startswith("forth") and row["strokes in one solve [-]"]][-2:]
     assert mean[-1] == pytest.approx(np.mean([row["roller peak pressure [MPa]"] for row in last]), rel=1e-2)
-    assert read.keys() == reading(finished.recorder.rows).keys()
+    assert read.keys() == quantities(finished.recorder.rows).keys()
 
 
 def test_an_elastic_scene_in_parts_wears_as_much(elastic):
@@ -201,7 +201,7 @@ def test_a_look_that_fails_loses_nothing(tmp_path, creeping, monkeypatch):
     def fail(self, state):
         raise ConvergenceError("no equilibrium")
 
-    monkeypatch.setattr(Stepper, "look_ahead", fail)
+    monkeypatch.setattr(Stepper, "solve_next_cycle", fail)
     summary = run(creeping, out=tmp_path, figures=False).summary
     assert (summary["status"], summary["strokes"]) == ("completed", 4)
     assert "the error of the time step is not known" in summary["warnings"][-1]
@@ -212,7 +212,7 @@ def test_looking_for_the_error_changes_nothing(finished):
     state, problem = finished.state, finished.state.stage.problem
     before = problem.state.vec.FV().NumPy().copy()
     kept = (state.strokes, state.memory.relaxed.copy(), state.work.solves, state.ledger.worn, problem.get_loads())
-    Stepper(state.stage.scene).stand(state)
+    Stepper(state.stage.scene).restore_last_stroke(state)
     again = time_step_errors(state)
     assert problem.state.vec.FV().NumPy() == pytest.approx(before, abs=0)
     assert state.strokes == kept[0]
@@ -222,10 +222,10 @@ def test_looking_for_the_error_changes_nothing(finished):
 
 
 def test_the_part_of_the_time_step_is_added(creeping, finished):
-    embedded, read = finished.summary["error estimates"], reading(finished.recorder.rows)
+    embedded, read = finished.summary["error estimates"], quantities(finished.recorder.rows)
     alike = {error: {name: values for name, values in columns.items()} for error, columns in read.items()}
     folded = creeping.folding.bound
-    said = stated(creeping, embedded, read, alike)
+    said = combined_errors(creeping, embedded, read, alike)
     for name in SEEN:
         steps = embedded.get(name, 0.0)  # the scene prescribes its steps
         assert said[name] == pytest.approx(embedded[by_time(name)] + folded + steps)
@@ -284,17 +284,17 @@ def test_a_run_to_an_error_takes_the_parts_that_it_needs(tmp_path, creeping, mon
 
 
 def test_the_time_step_is_a_knob_of_memory_alone(creeping, elastic):
-    ladders = {knob.ladder.name: knob for knob in knobs(creeping)}
-    assert "time step" not in {knob.ladder.name for knob in knobs(elastic)}
+    ladders = {parameter.ladder.name: parameter for parameter in parameters(creeping)}
+    assert "time step" not in {parameter.ladder.name for parameter in parameters(elastic)}
     ladder = ladders["time step"].ladder
     assert (ladder.values, ladder.own) == ((1.0, 0.5, 0.25, 0.125), 0)
     assert ladder.labels[:2] == ("1 part a stroke", "2 parts a stroke")
-    chosen = knobs(creeping)
-    setting = tuple(2 if knob.ladder.name == "time step" else knob.ladder.own for knob in chosen)
-    finer = at(creeping, chosen, setting)
+    chosen = parameters(creeping)
+    setting = tuple(2 if parameter.ladder.name == "time step" else parameter.ladder.own for parameter in chosen)
+    finer = with_setting(creeping, chosen, setting)
     assert finer.program.parts == 4
     assert changes(creeping, finer) == {"accuracy.parts": 4}
-    thirds = {knob.ladder.name: knob.ladder for knob in knobs(in_parts(creeping, 3))}["time step"]
+    thirds = {parameter.ladder.name: parameter.ladder for parameter in parameters(in_parts(creeping, 3))}["time step"]
     assert (thirds.values[1:3], thirds.own) == ((0.5, 1 / 3), 2)
 
 

@@ -7,9 +7,9 @@ import pytest
 
 from ngwear.errors import MeshError
 from ngwear.geometry.outline import Outline
-from ngwear.loop.remeshing import _Moved
+from ngwear.loop.remeshing import _Interpolation
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.wear_step import Wearing
+from ngwear.loop.wear_step import WearStep
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
 
 
@@ -63,7 +63,7 @@ def test_a_new_outline_keeps_the_shape_of_values():
         Outline(np.stack([np.cos(a), np.sin(a)], axis=1), ("rim",) * len(a), np.zeros(len(a), dtype=bool))
         for a in (angle, fine)
     )
-    moved = _Moved(before, after)(np.stack([1 + np.cos(angle), np.zeros_like(angle)]))
+    moved = _Interpolation(before, after)(np.stack([1 + np.cos(angle), np.zeros_like(angle)]))
     assert np.abs(moved[0] - (1 + np.cos(fine))).max() < 5e-3
     assert (moved[1] == 0).all()
 
@@ -99,10 +99,10 @@ def test_where_nodes_cannot_follow_the_strokes_to_come_leave_air(coarse_seal, mo
         with monkeypatch.context() as patch:
             if not follows:
                 patch.setattr(state.stage.body, "move_to", _refuse)
-            Wearing.begin(state, 0, outward, later=later)
+            WearStep.begin(state, 0, outward, later=later)
         stepper._solve_phase(state, 0, state.stage.scene.program.cycle[0], outward)
         found = state.stage.contacts["rod"].profile().pressure.max()
-        state.take_back(saved)
+        state.restore(saved)
         return found
 
     whole = peak({1: inward}, follows=True)

@@ -35,8 +35,8 @@ def edge():
         distance=DISTANCE,
         strokes=DISTANCE / 10,
         wear_rates={"rod": 2e-6},
-        remembers=False,
-        drifts=False,
+        has_memory=False,
+        laws_vary=False,
     )
 
 

@@ -176,7 +176,7 @@ def test_result_file_that_lost_a_column_or_a_profile_is_refused(finished):
 
 
 def test_missing_result_file_says_what_to_give(tmp_path):
-    with pytest.raises(ResultError, match=r"result\.h5 does not exist: give the folder of a run"):
+    with pytest.raises(ResultError, match=r"result\.h5 does not exist: give the folder of a finished run"):
         plot(tmp_path)
 
 

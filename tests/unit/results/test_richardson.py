@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ngwear.results.richardson import HIGHEST, LOWEST, error_of_finest, order_seen, relative_errors
+from ngwear.results.richardson import HIGHEST, LOWEST, error_of_finest, observed_order, relative_errors
 
 PLACES = np.linspace(1.0, 2.0, 5)
 LENGTH = np.sqrt(np.mean(PLACES**2))
@@ -18,14 +18,14 @@ def readings(order, *, ratio=2.0, error=0.01):
 @pytest.mark.parametrize("order", [1.0, 1.2, 1.5])
 def test_an_order_is_seen_and_the_error_exact(order, ratio):
     levels = readings(order, ratio=ratio)
-    assert order_seen(*levels, ratio=ratio) == pytest.approx(order)
+    assert observed_order(*levels, ratio=ratio) == pytest.approx(order)
     assert error_of_finest(*levels, ratio=ratio) == pytest.approx(0.01 * LENGTH)
 
 
 @pytest.mark.parametrize(("order", "taken"), [(0.1, LOWEST), (5.0, HIGHEST)])
 def test_orders_out_of_reason_are_not_believed(order, taken):
     levels = readings(order, error=1e-4)  # so that the coarsest is not far off
-    assert order_seen(*levels) == taken
+    assert observed_order(*levels) == taken
     assert error_of_finest(*levels) == pytest.approx(1e-4 * (2**order - 1) / (2**taken - 1) * LENGTH)
 
 
@@ -54,13 +54,13 @@ def test_two_levels_of_a_known_order():
 
 @pytest.mark.parametrize("levels", [(1.0, 1.1, 1.05), (1.0, 1.1, 1.15), (1.0, 1.0, 1.0), (1.0, 1.1, 1.1)])
 def test_differences_that_turn_round_or_grow_show_no_order(levels):
-    assert order_seen(*levels) is None
+    assert observed_order(*levels) is None
 
 
 def test_one_place_against_the_rest_does_not_hide_the_order():
     levels = np.array(readings(1.0))
     levels[2, 0] = levels[1, 0] - 0.001
-    assert order_seen(*levels) == pytest.approx(1.0, abs=0.15)
+    assert observed_order(*levels) == pytest.approx(1.0, abs=0.15)
 
 
 def test_readings_that_agree_have_no_error():
@@ -72,7 +72,7 @@ def test_readings_that_agree_have_no_error():
 def test_scatter_about_the_limit_is_estimated_without_bias(ratio):
     chance = np.random.default_rng(3).standard_normal((3, 20_000))
     levels = 7.0 + 0.01 * ratio ** np.arange(3.0)[:, None] * chance
-    assert order_seen(*levels, ratio=ratio) is None
+    assert observed_order(*levels, ratio=ratio) is None
     assert error_of_finest(*levels, ratio=ratio) == pytest.approx(0.01, rel=0.02)
     assert error_of_finest(*levels[:2], ratio=2.0) == pytest.approx(0.01 * np.hypot(1, ratio), rel=0.02)
 

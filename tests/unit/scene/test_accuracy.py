@@ -5,7 +5,7 @@ import pytest
 
 from ngwear.error_estimates.coarser_runs import scaled
 from ngwear.errors import SceneError
-from ngwear.loop.element_sizes import chosen, laid_out
+from ngwear.loop.element_sizes import with_contact_lengths, with_mounting_lengths
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.scene.accuracy import ALIKE, PRESETS, Accuracy
@@ -47,7 +47,7 @@ def test_elements_grow_faster_from_fewer_elements_across_unless_it_is_said_how()
     gradings = [Accuracy(across=across).grading for across in (24, 12, 6, 2, 1)]
     assert gradings == [pytest.approx(0.30, abs=0.01), 0.4, 0.5, 0.5, 0.5]
     assert Accuracy().grading == 0.25
-    assert Accuracy(across=6).given(Accuracy()).grading == 0.25
+    assert Accuracy(across=6).with_tolerances_of(Accuracy()).grading == 0.25
     assert Accuracy().with_across(6) == Accuracy(across=6)
     assert Accuracy(grading=0.3).with_across(6).grading == 0.3
     assert Accuracy(error=0.01).with_across(2) == Accuracy(across=2)
@@ -121,8 +121,8 @@ def test_a_scene_file_says_it(sheet_file, table, told):
 
 
 def test_a_scene_with_lengths_is_laid_out_as_it_is():
-    assert laid_out(GIVEN) is GIVEN
-    out = laid_out(of(6.0)).accuracy
+    assert with_mounting_lengths(GIVEN) is GIVEN
+    out = with_mounting_lengths(of(6.0)).accuracy
     height = np.ptp(GIVEN.part.outline.points, axis=0).min()
     assert out.across is None
     assert out.patch == out.mounting == pytest.approx(0.04 * height)
@@ -151,11 +151,11 @@ def test_chosen_leaves_alone_what_bears_nothing():
     state = Stepper(of(4.0)).start()
     stage = state.stage
     nothing = np.zeros_like(state.phases[0].vector)
-    assert chosen(stage, [nothing], 4.0) is stage.scene
+    assert with_contact_lengths(stage, [nothing], 4.0) is stage.scene
     vectors = [state.phases[0].vector]
-    found = chosen(stage, vectors, 10.0).accuracy.patch
-    assert chosen(stage, vectors, 20.0).accuracy.patch == pytest.approx(found / 2)
-    few = chosen(stage, vectors, 0.5).accuracy
+    found = with_contact_lengths(stage, vectors, 10.0).accuracy.patch
+    assert with_contact_lengths(stage, vectors, 20.0).accuracy.patch == pytest.approx(found / 2)
+    few = with_contact_lengths(stage, vectors, 0.5).accuracy
     assert few.coarse == few.mounting == few.patch == pytest.approx(20 * found), (
         "elsewhere no finer than in the contact"
     )
