@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
 
-CORNER_ANGLE = np.radians(30.0)  # a file that marks no corners gets one where the polygon turns by more
+CORNER_ANGLE = np.radians(30.0)  # without corner marks in a file, points where the polygon turns by more are corners
 
 
 class Drawing(NamedTuple):
-    """What a file says of an outline: the arguments of ``Outline``."""
+    """Contents of an outline file: the arguments of ``Outline``."""
 
     points: NDArray[np.float64]
     names: tuple[str, ...]
@@ -26,7 +26,7 @@ class Drawing(NamedTuple):
 
 
 def read_drawing(path: Path) -> Drawing:
-    """Read an outline by the file's ending: ``.toml``, ``.csv``, ``.step`` or ``.stp``.
+    """Read an outline file, ``.toml``, ``.csv``, ``.step`` or ``.stp``.
 
     Raises
     ------
@@ -48,7 +48,7 @@ def read_drawing(path: Path) -> Drawing:
 
 
 def write_drawing(drawing: Drawing, path: Path) -> None:
-    """Write an outline as TOML, every digit of it: an edge begins with each name, and at each corner.
+    """Write an outline as TOML with all digits; a new ``[[edge]]`` starts at each change of name and each corner.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Move a worn outline inwards so that its polygon loses exactly the worn area; heal it if it crosses itself."""
+"""Move a worn outline inwards so that its polygon loses exactly the worn area; repair it if it crosses itself."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ngwear.errors import GeometryError
 from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField
 
-OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when an outline is healed
+OPENING = 2e-3  # mm; when an outline is repaired, slivers and necks thinner than twice this are removed
 STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which points follow the column
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment
 
@@ -39,7 +39,7 @@ def recede(contour: Outline, area: Array, worn_edges: tuple[str, ...]) -> Outlin
     Returns
     -------
     Outline
-        With the same points displaced, or with other points if it had to be healed.
+        With the same points displaced, or with other points if it had to be repaired.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def recede(contour: Outline, area: Array, worn_edges: tuple[str, ...]) -> Outlin
 
 
 def receded(contour: Outline, area: Array, worn_edges: tuple[str, ...], columns: Array | None = None) -> Array:
-    """The outline's points after that, whether or not it then crosses itself; shape (n, 2) [mm].
+    """The outline's points after ``recede``, without repair, shape (n, 2) [mm].
 
     ``columns`` are unit vectors along which points shall move instead of their normals, shape (n, 2); zero for none.
     """
@@ -106,14 +106,15 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 def healed(before: Outline, after: Array) -> Outline:
-    """Rebuild a crossing outline: the section minus what the outline has swept, opened, its largest piece.
+    """Repair an outline that crosses itself: largest piece of the section without the swept area, opened by
+    ``OPENING``.
 
     Points take edge names and corners from the nearest point of the receded outline.
 
     Raises
     ------
     GeometryError
-        If an edge has vanished or the section has fallen apart.
+        If an edge is worn away completely or the section is cut in two.
     """
     from shapely import MultiPoint, Polygon, union_all
     from shapely.geometry import MultiPolygon
@@ -140,7 +141,7 @@ def healed(before: Outline, after: Array) -> Outline:
 
 
 def refuse_worn_through(contour: Outline) -> None:
-    """GeometryError if a section is nowhere thicker than what healing would take off, or falls apart by it."""
+    """Raise GeometryError if a section is nowhere thicker than ``2 OPENING``, or is cut in two by the opening."""
     from shapely import Polygon
 
     left = Polygon(contour.points).buffer(-OPENING)
@@ -211,7 +212,7 @@ def tidied(contour: Outline, field: SizeField) -> Outline:
 
 
 def _beside_fixed(contour: Outline, fixed: NDArray[np.bool_], h: Array) -> NDArray[np.bool_]:
-    """Points so close to a fixed one that they can go, on a straight piece: a worn corner that slides uses them up."""
+    """Points on a straight piece so close to a fixed point (a sliding worn corner) that they are dropped."""
     short = contour.lengths < 0.4 * np.minimum(h, np.median(contour.lengths))
     chord = np.roll(contour.points, -1, axis=0) - np.roll(contour.points, 1, axis=0)
     off = np.abs(_cross(contour.points - np.roll(contour.points, 1, axis=0), chord))  # twice the area that goes

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.equilibrium.lost_elements_transfer import keep
+from ngwear.equilibrium.lost_elements_transfer import transfer_to_remaining
 from ngwear.errors import GeometryError, MeshError, SceneError, require
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.element_body import ElementBody, elements
@@ -205,7 +205,7 @@ def go_on(state: State, cells: Cells) -> None:
         stage = Stage(old.scene, ElementBody(cells))
     except MeshError as error:
         raise GeometryError(f"what is left of the section is held or loaded by nothing: {error}") from None
-    adopt(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
+    adopt(state, stage, transfer_to_remaining(old.problem, [p.vector for p in state.phases], stage.problem))
 
 
 def follow(state: State, outline: Outline, points: Array) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.steady_memory import SteadyMemory
-from ngwear.equilibrium.state_transfer import carry
+from ngwear.equilibrium.state_transfer import transfer
 from ngwear.equilibrium.steady_sliding import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import Work, relax
 from ngwear.errors import SceneError
@@ -190,7 +190,7 @@ def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: St
     finest = float(np.clip(4 * speed * asperity.loss_time(speed), half / 40, half / 8)) / fineness
     near, far = np.minimum(2 / fineness, (NEAR, FAR))
     fine, memory = _block(asperity, depth, block.ends, half / fineness, finest, near, far)
-    (state,) = carry(block.problem, [block.problem.state.vec.FV().NumPy()], fine.problem)
+    (state,) = transfer(block.problem, [block.problem.state.vec.FV().NumPy()], fine.problem)
     fine.problem.state.vec.FV().NumPy()[:] = state
     memory.set_speed(speed, half)
     work.add(solve_steady(fine.problem, memory, options))

@@ -17,7 +17,7 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.steady_memory import SteadyMemory
 from ngwear.equilibrium.problem import FixedEdges, Problem
-from ngwear.equilibrium.state_transfer import carry_solid
+from ngwear.equilibrium.state_transfer import transfer_solid
 from ngwear.equilibrium.steady_sliding import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import SceneError
@@ -224,7 +224,7 @@ def slide_pin(
     work.add(coarse.slide(speed, options))
     first = coarse.result(speed, work, time.process_time() - clock)
     fine = PinStage(pin, mesh, coarse.disc(), speed=speed)
-    carry_solid(coarse.problem, fine.problem)
+    transfer_solid(coarse.problem, fine.problem)
     work = fine.slide(speed, options)
     if vtk is not None:
         fine.write_vtk(vtk / f"sheet_{speed:g}_mm_s")
