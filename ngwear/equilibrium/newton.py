@@ -165,7 +165,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
 def _settled(
     vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice], tolerance: float, left: float
 ) -> bool:
-    """Whether the last correction, times ``left``, leaves the tractions alone: on a stiff body they follow."""
+    """Whether the last correction, times ``left``, is small for the tractions too (on a stiff body)."""
     values, change = vector.FV().NumPy(), correction.FV().NumPy()
     highest = max((np.abs(values[p]).max() for p in parts), default=0.0)
     moved = max((np.abs(change[p]).max() for p in parts), default=0.0)

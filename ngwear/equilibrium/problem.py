@@ -119,7 +119,7 @@ class Problem:
     def freeze_imbalance(self) -> None:
         """Take the present residual as a fictitious load, so that the present state is an equilibrium.
 
-        The load ``"imbalance"`` is set to 1; walking it to 0 leads from any admissible guess to the solution
+        The load ``"imbalance"`` is set to 1; its decrease to 0 leads from any admissible state to the solution
         (Newton homotopy).
         """
         self._imbalance = None

@@ -15,7 +15,7 @@ from ngwear.errors import SceneError
 Array = NDArray[np.float64]
 UNITS = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3}  # micro sign and Greek mu
 FEWEST = 20
-LARGEST_HOLE = 0.1  # of the profile's length, beyond which a note says so
+LARGEST_HOLE = 0.1  # of the profile's length: a longer gap gives a note
 WRONG_UNIT = 1000**0.5  # beyond, a ratio is nearer to 1000 than to 1
 
 
@@ -30,7 +30,7 @@ class Profile:
     z : array, shape (n,)
         Height [mm], positive out of the material; its zero does not matter.
     notes : tuple of str
-        What was mended while reading.
+        Corrections made while reading.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def read_profile(path: Path | str, *, length: float | None = None) -> Profile:
     Raises
     ------
     SceneError
-        If the file is missing or no such table, names no units, or its places cannot be in the unit that it names.
+        If the file is missing or not such a table, has no units, or its places cannot be in the stated unit.
     """
     path = Path(path)
     if not path.is_file():
