@@ -220,7 +220,7 @@ def _earlier_levels(folder: OutFolder, scene: Scene, *, resume: bool) -> list[di
         notes = json.loads(file.read_text(encoding="utf-8"))
         of, levels = notes["scene"], list(notes["levels"])
         for level in levels:
-            _place(folder, level)  # made of numbers alone: no text of the file becomes a path
+            _level_folder(folder, level)  # made of numbers alone: no text of the file becomes a path
         if not levels:
             raise ValueError("it tells of no level")
     except (OSError, ValueError, KeyError, TypeError) as error:
