@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import MISSING, fields
+from dataclasses import fields
 from numbers import Integral, Real
 from typing import Any
 
@@ -52,9 +52,10 @@ def check_fields(record: Any, place: str) -> None:
     """
     for f in fields(record):
         value = getattr(record, f.name)
-        given = f.default is MISSING or value is not f.default
-        if given and not (isinstance(value, float) and math.isnan(value)):
-            object.__setattr__(record, f.name, typed(f"{place}.{f.name}", value, str(f.type)))
+        number = isinstance(value, float)  # an infinite default is another object in another process
+        if value is f.default or (number and (value == f.default or math.isnan(value))):
+            continue
+        object.__setattr__(record, f.name, typed(f"{place}.{f.name}", value, str(f.type)))
 
 
 def typed(place: str, value: Any, kind: str) -> Any:

@@ -1,5 +1,6 @@
 """Options, markers by folder, and a small scene that mounts and wears in a third of a second."""
 
+import os
 import shutil
 import sys
 from pathlib import Path
@@ -8,6 +9,7 @@ import numpy as np
 import pytest
 
 from ngwear.geometry.outline import Outline
+from ngwear.parallel.workers import ONE_THREAD
 from ngwear.scene.read_scene import read_scene
 
 TESTS = Path(__file__).parent
@@ -87,6 +89,9 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    if not config.getoption("--slow"):  # one thread for each of the processes that share the cores
+        for name in ONE_THREAD:
+            os.environ.setdefault(name, "1")
     config.addinivalue_line("markers", "slow: takes more than a few seconds; needs --slow")
     for folder in FOLDERS:
         config.addinivalue_line("markers", f"{folder}: everything under tests/{folder}")

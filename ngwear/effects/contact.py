@@ -268,7 +268,7 @@ class OutlineContact(UnilateralContact):
 
     def touching(self) -> NDArray[np.bool_]:
         """Which of the mesh edges in ``positions`` carry pressure."""
-        return self.end_pressures().mean(axis=1) > 1e-6 * self.modulus
+        return self.end_pressures().mean(axis=1) > 1e-6 * self.modulus  # above what rounding leaves, below any load
 
     def prepare(self) -> None:
         super().prepare()
@@ -282,7 +282,7 @@ class OutlineContact(UnilateralContact):
         gap, pressure = self._sample(self.gap(self._state)), self.end_pressures()
         carried = np.maximum(pressure, 0.0)
         still = np.maximum(pressure - self._sample(self._augmentation) * gap, 0.0)
-        if not carried.any() or still.sum() > 0.1 * carried.sum():
+        if not carried.any() or still.sum() > 0.1 * carried.sum():  # a tenth in touch is stiff enough for Newton
             return
         ax, ay = self.surface.approach
         nx, ny = (self._sample(ng.CF(n)) for n in self.surface.normal(*self.place(self._state)))

@@ -13,9 +13,10 @@ from ngwear.effects.unilateral import COORDINATES, UnilateralContact
 from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
+# Settled on the pin (``verify error_estimates indentation``): a paraboloid fits near its top only.
 NEAR_PEAK = 0.8  # of the highest pressure: faces through whose pressures the paraboloid is laid
-LOADED = 1e-3  # of the highest pressure
-FEWEST = 12  # of the faces near the peak, for its six coefficients
+LOADED = 1e-3  # of the highest pressure: below, a face at the edge bears what the mesh makes of nothing
+FEWEST = 12  # of the faces near the peak, for its six coefficients: twice as many
 
 
 @dataclass(frozen=True)

@@ -168,7 +168,7 @@ class ContactProfile:
     def zones(self, *, threshold: float = 1e-3) -> list[Zone]:
         """Connected pieces where the pressure exceeds ``threshold`` times its maximum."""
         p = self.pressure
-        on = p > max(threshold * p.max(initial=0.0), 1e-12)
+        on = p > max(threshold * p.max(initial=0.0), 1e-12)  # a thousandth: what the mesh makes of nothing at an end
         joined = np.zeros(len(p) + 1, dtype=bool)  # whether a mesh edge joins node i - 1 to node i
         joined[self.edges.max(axis=1)[np.abs(np.diff(self.edges, axis=1).ravel()) == 1]] = True
         zones, start = [], None

@@ -11,7 +11,7 @@ from ngwear.fields.displacements import stress_order
 from ngwear.geometry.meshed import Meshed
 from ngwear.materials import Hyperelastic
 
-POINTWISE = 3.0  # Ks / G
+POINTWISE = 3.0  # Ks / G: 0 and 10 make wrinkles, see ``Elasticity``; settled on ``verify sliding_roller``
 
 
 class Elasticity(VolumeTerm):

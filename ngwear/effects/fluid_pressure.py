@@ -13,6 +13,7 @@ from ngwear.errors import SceneError
 from ngwear.geometry.meshed_section import MeshedSection
 
 CENTRE = 2 / 5  # of the way in contact: how far from its inner end a square root of the way has its centre
+# Half of a thousandth, the least error that a run may state; settled on the rod seal (``verify rod_seal``).
 STAYS = 5e-4  # of what the contacts carry: a change of the fluid's load with which the front stands
 
 

@@ -14,8 +14,8 @@ from ngwear.laws import WearLaw
 from ngwear.laws.wear_law import NO_FRICTION
 
 Array = NDArray[np.float64]
-LEAST = 1e-8  # of the shear modulus: pressures below wear in proportion, so that no slope is infinite
-FADES = 0.25  # from one tangent of a solve to the next
+LEAST = 1e-8  # of the shear modulus: pressures below wear in proportion, so that no slope is infinite; no load
+FADES = 0.25  # from one tangent of a solve to the next: 1e-6 after ten; checked by ``verify wear_laws``
 
 
 class PressureWear:

@@ -10,8 +10,8 @@ import numpy as np
 from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
 from ngwear.effects.contact import OutlineContact
 
-SHIFT = 0.25  # of a mesh edge
-TOUCHING = 1e-2  # of the highest pressure: what is reckoned as contact
+SHIFT = 0.25  # of a mesh edge; an eighth of a wave of two edges; settled on the sliding roller (``verify``)
+TOUCHING = 1e-2  # of the highest pressure: what counts as contact; below, a mesh edge at its end says little
 
 
 class Ripples:

@@ -13,6 +13,7 @@ from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.meshed import Meshed
 from ngwear.laws import FrictionLaw
 
+# It changes the way to the solution only, see ``_laws``; checked by ``verify partial_slip`` and ``tests/stability``.
 RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
 NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
 

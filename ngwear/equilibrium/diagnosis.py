@@ -12,6 +12,7 @@ from ngwear.effects.contact import OutlineContact
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
 
+# Above what rounding leaves, far below what any support or contact brings; checked by ``tests/stability`` (sealing.py).
 FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by one, below which nothing holds it
 # Least principal stretch of a free surface in plane strain: creases (Hong et al., Appl. Phys. Lett. 95 (2009) 111901)
 # and wrinkles (Biot, Appl. Sci. Res. A 12 (1963) 168).

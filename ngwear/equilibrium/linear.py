@@ -11,9 +11,9 @@ from netgen.libngpy._meshing import NgException
 from numpy.typing import NDArray
 from pyngcore import Array_D_S, Array_I_S
 
-RESIDUAL_TOLERANCE = 1e-6
+RESIDUAL_TOLERANCE = 1e-6  # of a solve; worse is a singular matrix: sound ones are refined below 1e-8
 REFINE_ABOVE = 1e-8  # relative residual from which a solve is refined: the factorisation does not pivot freely
-REFINEMENTS = 8
+REFINEMENTS = 8  # at most: each gains digits, or the factorisation is of no use
 
 
 @lru_cache(maxsize=1)

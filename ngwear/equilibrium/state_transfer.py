@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # nothing sticks, no import of it
     from ngwear.effects.stick_slip import StickSlip
 
 Array = NDArray[np.float64]
-LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled
+LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled: half of what rubber shall bear
 
 
 def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:

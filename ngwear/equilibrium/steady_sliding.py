@@ -28,9 +28,9 @@ class SteadyOptions:
         Earlier rounds that Anderson's acceleration combines.
     """
 
-    tolerance: float = 1e-4
-    max_rounds: int = 60
-    memory: int = 8
+    tolerance: float = 1e-4  # a tenth of what friction errs by (``verify hunter``)
+    max_rounds: int = 60  # some eight do: 108 solves for the shipped pin's 14 states
+    memory: int = 8  # as many as are needed, as a rule; each keeps a whole history
 
 
 def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions | None = None) -> Work:

@@ -11,7 +11,7 @@ from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
 
-LOOSER = 1e3  # tolerance of a solve on the way over the last one's, if it is only the start of the next
+LOOSER = 1e3  # tolerance of a solve on the way over the last one's, if it only starts the next
 
 
 @dataclass(frozen=True)
@@ -31,9 +31,9 @@ class StepOptions:
     """
 
     first: float = 1.0
-    smallest: float = 1 / 512
-    easy: int = 8
-    max_updates: int = 8
+    smallest: float = 1 / 512  # nine halvings; a way that needs more ends in a report
+    easy: int = 8  # a third of the most iterations
+    max_updates: int = 8  # a front that swings between two edges is left then
     newton: NewtonOptions = field(default_factory=NewtonOptions)
 
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-LOWEST, HIGHEST = 0.05, 8.0  # smallest and largest order that is accepted
-RATIO_BITS = 60
+LOWEST, HIGHEST = 0.05, 8.0  # orders that are told from none at all; no knob has a higher one
+RATIO_BITS = 60  # halvings: to rounding
 
 
 def observed_order(values: Sequence[float], results: Sequence[float]) -> float | None:

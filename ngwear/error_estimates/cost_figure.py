@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARKERS = ("o", "s", "^", "D", "v", "P")
-LEAST = 1e-5  # smaller errors are drawn at this value
+LEAST = 1e-5  # errors below, or none at all, are drawn here: a hundredth of the smallest target
 
 
 def draw_cost(scene: str, study: Study, choices: Sequence[Choice]) -> Figure:

@@ -26,7 +26,7 @@ from ngwear.scene.scene import Scene
 
 DEPTH, PEAK = "maximum depth [mm]", "peak pressure [MPa]"
 NO_TIME = "no time was left"
-GRACE = 60.0  # s, for one call of a compiled library
+GRACE = 60.0  # s, for one call of a compiled library: more than a factorisation takes
 
 
 class OutOfTimeError(Exception):

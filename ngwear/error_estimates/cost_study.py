@@ -9,8 +9,8 @@ from ngwear.error_estimates.convergence_order import observed_order, reference_e
 from ngwear.error_estimates.ladder import Ladder, Measurement, Setting, with_level
 from ngwear.error_estimates.pareto_front import pareto_front, power_law, product_seconds
 
-TARGETS = (0.05, 0.01, 0.001)
-SETTLED = 0.1 * min(TARGETS)  # error of the finest run below which no finer one is needed
+TARGETS = (0.05, 0.01, 0.001)  # a look, a decision, a reference
+SETTLED = 0.1 * min(TARGETS)  # error of the finest rung below which a finer one changes no choice
 
 
 @dataclass

@@ -107,7 +107,7 @@ def _others(study: Study, setting: Setting) -> str:
     """Errors of other quantities of a run, if they are larger than that of the main one."""
     main = study.error(setting, study.main)
     errors = {q: study.error(setting, q) for q in study.quantities[1:]}
-    worse = {q: e for q, e in errors.items() if math.isfinite(e) and e > max(2 * main, 1e-3)}
+    worse = {q: e for q, e in errors.items() if math.isfinite(e) and e > max(2 * main, 1e-3)}  # what a user should know
     if not worse:
         return ""
     return " The error of the " + ", of the ".join(f"{name_of(q)} is {per_cent(e)}" for q, e in worse.items()) + "."

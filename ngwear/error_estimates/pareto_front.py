@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from ngwear.error_estimates.ladder import Setting
 
-ALIKE = 0.05  # relative difference of times that a second measurement may not reproduce
+ALIKE = 0.05  # relative difference of seconds that a second measurement would not repeat, on a shared machine
 
 
 def pareto_front(points: Iterable[tuple[float, float]]) -> list[int]:

@@ -14,14 +14,15 @@ from ngwear.scene.checks import why_not_order
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
 
+# Ladders: factors of 2 where the error falls with the value, wide enough that all three targets may lie in between.
 MESH = (4.0, 2.0, 1.0, 0.5, 0.25, 0.125)  # times the scene's element edge
-JUMPS = (16.0, 4.0, 1.0, 0.25, 0.0625)  # times wear_error: the jump is proportional to its square root
-STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)
-BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # times the size of the block, limited by the track
-PARTS = (1, 2, 4, 8)
-FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)
-HIGHER_ORDER = 0.25  # error of order 2 over its difference from order 1, at most; 1/4 on the seal, 1/200 on the shaft
-EACH_BEGINS = 0.02  # first wear_error for a scene that solves each stroke
+JUMPS = (16.0, 4.0, 1.0, 0.25, 0.0625)  # times its wear_error: the jump changes with the square root
+STRESS = (4.0, 2.0, 1.0, 0.5, 0.25)  # times its stress_error
+BLOCK = (0.6, 0.8, 1.0, 1.15, 1.4, 2.0)  # times the block's reach, as far as the track leaves room
+PARTS = (1, 2, 4, 8)  # of a stroke
+FOLDING = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 3e-4, 1e-4, 1e-5, 1e-6, 0.0)  # each that keeps another arm is a rung
+HIGHER_ORDER = 0.25  # of what order 1 differs from order 2 by: order 2 errs less, by 1/4 and 1/200 on seal and shaft
+EACH_BEGINS = 0.02  # wear_error from which jumps are coarsened in a scene that solves each stroke: the default
 AnyScene = Scene | PinScene
 
 

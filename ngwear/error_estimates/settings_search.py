@@ -11,11 +11,13 @@ from ngwear.error_estimates.ladder import STOPPED, Ladder, Measurement, Setting,
 from ngwear.error_estimates.pareto_front import cheapest
 from ngwear.errors import SceneError
 
-CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # share of the budget, or base runs, reserved for the recommended settings
-FIRST = 0.5  # share of the remaining time for the first run, and then for the scene as given
-OTHERS = 0.5  # share of the remaining time for the ladders other than the mesh; else they use a coarser mesh
-TOGETHER = 0.4  # share of the time then remaining for a run with all parameters at their finest
-BEYOND = 30.0  # s: time of a run beyond the budget that only measures the time of a run
+# Shares of the budget, in the order in which they are spent: what a short budget tells depends on them, no result does.
+# Tried on the rod seal and the shaft within 600 and 300 s (``ngwear cost``).
+CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended
+FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
+OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
+TOGETHER = 0.4  # of what is then left: what a run with all knobs at their finest may take
+BEYOND = 30.0  # s: what a run may take that only tells what one takes, where the budget did not even show that
 Measure = Callable[[Setting, float], Measurement]
 
 

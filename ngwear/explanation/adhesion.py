@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-LIMIT = 0.1  # pull-off force over load
+LIMIT = 0.1  # pull-off force over load: by that share of it adhesion changes what the contact carries
 
 
 def hertz_radius(load: float, half_width: float, modulus: float) -> float:

@@ -19,8 +19,9 @@ from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
-POINTS = 12  # material points in each triangle of the background mesh
-COARSER = 4.0  # times the element edge of a scene that deactivates elements
+POINTS = 12  # of the background in each triangle: ``fields.background_mesh.RULE``
+# Pressures are wanted to a tenth or so, and in seconds.
+COARSER = 4.0  # than the layers of a scene that deactivates elements, which are as fine everywhere
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-MIXED, FULL = 1.0, 3.0  # film thickness over roughness above which lubrication is mixed, and full
+MIXED, FULL = 1.0, 3.0  # film over roughness, from which films carry and part the surfaces (lambda ratio, as usual)
 
 
 def hersey(viscosity: float, speed: float, load: float) -> float:

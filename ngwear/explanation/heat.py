@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import k0e, k1e
 
 LIMIT = 10.0  # K: by WLF's universal constants rubber 50 K above its glass transition then relaxes six times as fast
-POINTS = 2001
+POINTS = 2001  # of a sum over the band; its error is far below that of the constants assumed
 
 
 def peclet(speed: float, half_width: float, diffusivity: float) -> float:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-LIMIT = 0.01  # rho v^2 / G: relative change of stresses by inertia under a steadily sliding load
-SLOW = 0.1  # travel time of a shear wave over the time of a stroke
+LIMIT = 0.01  # rho v^2 / G: by so much, relatively, inertia changes stresses under a steadily sliding load
+SLOW = 0.1  # travel time of a shear wave over the time of a stroke: ten ways through: the part is as good as at rest
 
 
 def wave_speed(modulus: float, density: float) -> float:

@@ -15,8 +15,8 @@ from ngwear.loop.law_changes import friction_range
 from ngwear.materials.library import FILLED_ARMS, FILLED_LONG_TERM, FILLED_TIMES
 from ngwear.scene.scene import Scene
 
-SHARE = 0.1  # share of a load or a width above which an effect counts
-RELAXED = 0.05  # of the stiffness
+SHARE = 0.1  # of a load or a width: from which on it counts; stated in every verdict
+RELAXED = 0.05  # of the stiffness: what is left of relaxation once it counts as over
 UNSAID = "the strokes have no speed"
 
 

@@ -9,8 +9,8 @@ from ngwear.explanation.assumptions import Assumed
 from ngwear.explanation.verdict import Verdict, onset
 from ngwear.scene.pin_scene import Pin, PinScene
 
-WORN, TURNS = 0.01, 1000  # worn share of the sheet's thickness, and number of turns for it
-WARM = 1.0  # K, flash temperature above which heat from earlier turns may matter
+WORN, TURNS = 0.01, 1000  # share of the sheet's thickness, and turns that wear it: round numbers, stated in the verdict
+WARM = 1.0  # K of flash temperature from which on the warming by all turns before may count: a tenth of heat.LIMIT
 
 
 def left_out(scene: PinScene, assumed: Assumed) -> dict[str, Verdict]:

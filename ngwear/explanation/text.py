@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-WIDTH = 118
+WIDTH = 118  # characters: a terminal of 120
 BROUGHT = ("unknowns", "matrix entries", "memory [MB]")
 MATTERS = {True: "matters", False: "does not matter", None: "cannot be judged from the scene"}
 

@@ -15,7 +15,7 @@ from ngwear.geometry.body import Body
 from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
-RULE = 6  # order of the integration rule: 12 points a triangle; with 6 points the fit is unstable
+RULE = 6  # order of the rule: 12 points a triangle; with 6 the fit is unstable
 
 
 class Background:

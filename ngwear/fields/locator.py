@@ -12,8 +12,8 @@ Array = NDArray[np.float64]
 
 # Corners and middles of the edges opposite to them, on the reference triangle.
 NODES = np.array([[1.0, 0.0], [0.0, 1.0], [0.0, 0.0], [0.0, 0.5], [0.5, 0.0], [0.5, 0.5]])
-OUTSIDE = 1e-6  # of an element's height: beyond, a point lies outside of it
-MOST_MOVES = 12  # from element to element
+OUTSIDE = 1e-6  # of an element's height: beyond, a point lies outside of it; above the error of ``_inverted``
+MOST_MOVES = 12  # from element to element: an outline moves by one or so on a mesh; points outside go to and fro
 
 
 class Locator:

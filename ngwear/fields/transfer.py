@@ -50,7 +50,7 @@ def nearest_places(mesh: ng.Mesh, points: Array) -> NDArray[Any]:
         return mapped
     centres = _centres(mesh)
     _, nearest = cKDTree(centres).query(points[lost])
-    for pull in (1e-4, 1e-3, 1e-2, 0.05, 0.2, 0.5, 1.0):
+    for pull in (1e-4, 1e-3, 1e-2, 0.05, 0.2, 0.5, 1.0):  # of the way to the centre, which lies inside
         trial = points[lost] + pull * (centres[nearest] - points[lost])
         found = mesh(*trial.T)
         hit = found["nr"] >= 0

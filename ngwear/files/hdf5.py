@@ -18,7 +18,7 @@ from ngwear.errors import ResultError
 from ngwear.files.subnormal import without_subnormals
 from ngwear.files.version import VERSION
 
-MANY = 1000  # least number of values for compression
+MANY = 1000  # numbers; below, compression saves nothing: each chunk has an overhead
 LAYOUT = 2  # 1: as ngwear 0.1 wrote it, slashes in names and no attribute "layout"
 
 

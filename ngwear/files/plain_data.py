@@ -18,9 +18,9 @@ from ngwear.errors import ResultError
 
 AnyArray = NDArray[Any]
 AS_THEY_ARE = (type(None), bool, int, float, str)
-KINDS = "biufcSUmM"  # NumPy type codes without Python objects
-SHORT = 8  # lists with fewer numbers are stored as text
-LARGEST = 2**63  # larger integers are stored as text
+KINDS = "biufcSUmM"  # of arrays: whatever has no Python objects in it
+SHORT = 8  # a list of numbers with fewer stays text: an array has a header of 128 bytes
+LARGEST = 2**63  # whole numbers from here on stay text
 
 
 @runtime_checkable

@@ -15,7 +15,7 @@ Index = NDArray[np.intp]
 Mask = NDArray[np.bool_]
 
 HOLE, EXPOSED = "hole", "exposed"
-CUT = 0.05  # of the section: how much may come loose at once before it counts as cut in two
+CUT = 0.05  # of the section: how much may come loose at once before it counts as cut in two; crumbs are some elements
 
 
 class Fate(enum.IntEnum):

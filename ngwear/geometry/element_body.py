@@ -17,7 +17,7 @@ from ngwear.geometry.meshed_section import BoundaryEdges, MeshedSection
 from ngwear.geometry.outline import Outline
 
 Index = NDArray[np.intp]
-FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded
+FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts as folded; a filter acts before
 
 
 class ElementBody(MeshedSection):

@@ -16,7 +16,7 @@ from ngwear.geometry.outline import Array, Outline
 from ngwear.geometry.sizing import SizeField, fitted, mesh_nodes
 
 Index = NDArray[np.intp]
-SAME = 1e-7  # of the section's size
+SAME = 1e-7  # of the section's size: points nearer are one; above rounding, far below an element
 INSIDE = "between layers and triangles"
 
 
@@ -47,7 +47,7 @@ def layered(
     along = chord / np.linalg.norm(chord)
     inward = np.array([-along[1], along[0]])  # the section lies on the left of its outline
     steps = np.diff(face, axis=0) @ along
-    if steps.min() <= 0.05 * edge:
+    if steps.min() <= 0.05 * edge:  # columns so close, or backwards, make no element
         place = face[int(steps.argmin())].round(3).tolist()
         raise GeometryError(f"the edges {list(edges)} overhang at {place}: layers of elements cannot follow them")
     rows = max(1, round(depth / edge))

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from ngwear.errors import GeometryError
 
+# Between a polygon's turns along a round (12 points a circle at least) and a chamfer of 45 degrees.
 CORNER_ANGLE = np.radians(30.0)  # a file that marks no corners gets one where the polygon turns by more
 
 
@@ -135,7 +136,7 @@ def _step(path: Path) -> Drawing:
     return _joined(pieces, path.name)
 
 
-def _sampled(edge: Any, max_turn: float = 0.2) -> np.ndarray:
+def _sampled(edge: Any, max_turn: float = 0.2) -> np.ndarray:  # rad: a spline errs by 4e-6 of the radius
     """Points along an OCC edge, dense enough that the polygon turns by at most ``max_turn`` rad at a point."""
     a, b = edge.parameter_interval
     for count in (1, 4, 8, 16, 32, 64, 128, 256, 512):

@@ -15,7 +15,7 @@ from ngwear.geometry.meshed import Meshed
 
 Array = NDArray[np.float64]
 MIDDLE = "middle"
-SMALLEST_VOLUME = 1e-3  # of an element over the cube of its longest edge; 0.118 is a regular one's
+SMALLEST_VOLUME = 1e-3  # of an element over the cube of its longest edge; 0.118 is a regular one's, flat ones have none
 
 
 class Sheet(Meshed):
@@ -112,7 +112,7 @@ class Sheet(Meshed):
         """Pass the mesh through the gates: volume (the outer arcs are chords in it) and the shape of the elements."""
         exact = 4 * self.beside * self.reach * self.thickness
         found = ng.Integrate(1, self.mesh)
-        if not abs(found - exact) <= 0.05 * exact:
+        if not abs(found - exact) <= 0.05 * exact:  # more than chords of coarse arcs cut off
             raise MeshError(f"the mesh has a volume of {found:.6g} mm³, the sheet {exact:.6g} mm³: the mesher gave up")
         points = self.mesh.ngmesh.Coordinates()
         corners = np.array(points)[self.mesh.ngmesh.Elements3D().NumPy()["nodes"][:, :4].astype(int) - 1]

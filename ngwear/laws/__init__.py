@@ -1,4 +1,4 @@
-"""Laws of friction and of wear, one a file; they know no mesh."""
+"""Laws of friction and of wear, one in each file; they do not use a mesh."""
 
 from ngwear.laws.base import Curve, FrictionLaw
 from ngwear.laws.constant import Constant, law_of

@@ -1,4 +1,4 @@
-"""What every law of friction offers."""
+"""Base class of all laws of friction."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ngwear.errors import SceneError
 
 @dataclass(frozen=True)
 class Curve:
-    """A coefficient over the sliding distance that bends at ``breaks`` [mm] and is linear, or nearly so, between."""
+    """A coefficient over the sliding distance; (nearly) linear between the distances ``breaks`` [mm]."""
 
     value: Callable[[float], float]
     breaks: tuple[float, ...]
@@ -37,57 +37,57 @@ class Curve:
 class FrictionLaw(abc.ABC):
     """Coefficient of friction mu(s, v, p) over sliding distance, speed and Cauchy pressure.
 
-    Distance and speed stand still while a stroke is solved, the pressure does not. So a law is taken in two steps:
-    ``held`` makes numbers of distance and speed, ``of_pressure`` makes mu of these and of a pressure, in plain
-    arithmetic, so that numbers, arrays and NGSolve's coefficient functions may come in.
+    Distance and speed are constant in a solve, the pressure is not. So a law is evaluated in two steps: ``held``
+    computes numbers from distance and speed, ``of_pressure`` computes mu from these numbers and a pressure. The second
+    step uses plain arithmetic, so that numbers, arrays and NGSolve's coefficient functions are allowed.
     """
 
     @property
     def depends_on_speed(self) -> bool:
-        """Whether mu changes with the speed."""
+        """Whether mu depends on the speed."""
         return False
 
     @property
     def depends_on_pressure(self) -> bool:
-        """Whether mu changes with the pressure."""
+        """Whether mu depends on the pressure."""
         return False
 
     @property
     def breaks(self) -> tuple[float, ...]:
-        """Sliding distances at which the law bends [mm]: its extremes lie there, or at the ends of a range.
+        """Sliding distances at which the slope of mu changes [mm]: extremes lie there, or at the ends of a range.
 
-        Empty for a law that does not know the distance.
+        Empty for a law that does not depend on the distance.
         """
         return ()
 
     @abc.abstractmethod
     def held(self, distance: float, speed: float | None) -> tuple[float, ...]:
-        """What the law makes of a sliding distance [mm] and a speed [mm/s]; None for a law that needs no speed."""
+        """Numbers of the law at a sliding distance [mm] and a speed [mm/s]; speed None for a law without it."""
 
     def of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
-        """Coefficient mu [-] of what ``held`` gave and a Cauchy pressure, >= 0 [MPa]."""
+        """Coefficient mu [-] from the numbers of ``held`` and a Cauchy pressure >= 0 [MPa]."""
         return held[0]
 
     def slope_of_pressure(self, held: Sequence[Any], pressure: Any) -> Any:
-        """Its derivative dmu/dp there [1/MPa]."""
+        """Derivative dmu/dp [1/MPa]; arguments as of ``of_pressure``."""
         return 0.0
 
     def mu(self, distance: float, speed: float | None = None, pressure: Any = 0.0) -> Any:
-        """Coefficient of friction [-], with the shape of the pressure [MPa] if the law depends on it."""
+        """Coefficient of friction [-]; it has the shape of the pressure [MPa] if the law depends on it."""
         return self.of_pressure(self.held(distance, speed), pressure)
 
     def curve(self, speed: float | None = None) -> Curve:
-        """Coefficient over the distance, at a speed [mm/s] and under the lightest pressure."""
+        """Coefficient over the sliding distance, at a speed [mm/s] and at pressure 0."""
         return Curve(partial(self.mu, speed=speed), self.breaks)
 
     @property
     @abc.abstractmethod
     def words(self) -> str:
-        """The law in a line."""
+        """The law in one line of text."""
 
 
 def require_number(place: str, value: float, *, above: float | None = None) -> None:
-    """Refuse what is not finite and at least 0, or, if given, not greater than ``above``.
+    """Require a finite number: at least 0, or greater than ``above`` if given.
 
     Raises
     ------

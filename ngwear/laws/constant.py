@@ -1,4 +1,4 @@
-"""Friction that depends on nothing."""
+"""Constant coefficient of friction."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ngwear.laws.base import FrictionLaw, require_number
 
 @dataclass(frozen=True, kw_only=True)
 class Constant(FrictionLaw):
-    """Coulomb's mu [-], >= 0. A scene's ``friction`` that is a number means this law.
+    """Coulomb's law with a constant mu [-], >= 0. A number as ``friction`` of a contact means this law.
 
     Raises
     ------
@@ -38,6 +38,6 @@ class Constant(FrictionLaw):
 
 
 def law_of(friction: FrictionLaw | float) -> FrictionLaw | None:
-    """Return the law that a scene's ``friction`` means; None without any."""
+    """The law for a contact's ``friction``; None without friction."""
     law = friction if isinstance(friction, FrictionLaw) else Constant(value=friction)
     return None if law == Constant(value=0.0) else law

@@ -1,4 +1,4 @@
-"""When rubber is torn: criteria on the stress of an element."""
+"""Criteria for tearing: limits of the stress in an element."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Stresses:
-    """What rubber bears, at any number of places.
+    """Stress and strain energy at any number of places.
 
     Parameters
     ----------
@@ -42,10 +42,10 @@ class Stresses:
         return 0.5 * (xx + yy) + np.hypot(0.5 * (xx - yy), xy)
 
     def averaged(self, centres: Array, areas: Array, length: float) -> Stresses:
-        """Means over the elements whose centres, shape (n, 2), lie within ``length / 2`` of each one's, by their areas.
+        """Area-weighted means over the elements whose centres, shape (n, 2), lie within ``length / 2`` of each one.
 
-        What tears a mesh with finer elements is then the same (Pijaudier-Cabot and Bažant, J. Eng. Mech. 113 (1987)
-        1512, with a constant weight).
+        The load at which rubber tears then does not depend on the mesh (Pijaudier-Cabot and Bažant, J. Eng. Mech. 113
+        (1987) 1512, with a constant weight).
         """
         tree = cKDTree(centres)
         pairs = tree.query_pairs(length / 2, output_type="ndarray")
@@ -58,10 +58,11 @@ class Stresses:
 
 @dataclass(frozen=True, kw_only=True)
 class Criterion(abc.ABC):
-    """A limit that an element bears; ``critical`` in the criterion's unit, > 0.
+    """A limit at which an element tears; ``critical`` in the criterion's unit, > 0.
 
-    ``length`` is the material's: over what diameter stresses are averaged before they are compared [mm], > 0. Without
-    it each element's own mean counts, and finer elements, which see more of a stress peak, tear sooner.
+    ``length`` is a length of the material [mm], > 0: stresses are averaged over a circle of this diameter before they
+    are compared. Without it the mean of each element counts; finer elements resolve a stress peak better and tear
+    earlier.
     """
 
     critical: float
@@ -79,14 +80,14 @@ class Criterion(abc.ABC):
 
     @abc.abstractmethod
     def exhaustion(self, stresses: Stresses) -> Array:
-        """How much of what it bears the rubber is under at each place, shape (...) [-]; torn from 1 on.
+        """Present load over critical load at each place, shape (...) [-]; torn from 1 on.
 
-        Of a criterion that ``accumulates``: what one cycle uses up.
+        For a criterion that ``accumulates``: the damage of one cycle.
         """
 
 
 class TensileNormalStress(Criterion):
-    """Normal stress across x or y, whichever pulls more, over the critical one [MPa] (the source's, case C5)."""
+    """Larger of the normal stresses xx and yy over the critical one [MPa] (10.5772/50498, case C5)."""
 
     name = "tensile normal stress"
 
@@ -114,7 +115,7 @@ class StrainEnergyDensity(Criterion):
 
 @dataclass(frozen=True, kw_only=True)
 class Fatigue(Criterion):
-    """Damage that adds up over cycles: ``(sigma_1 / critical)^exponent`` each, sigma_1 the cycle's highest.
+    """Damage that adds up over cycles, each ``(sigma_1 / critical)^exponent`` with the highest sigma_1 of the cycle.
 
     Basquin's line with Miner's rule (J. Appl. Mech. 12 (1945) A159); ``critical`` is the principal stress that tears in
     a single cycle [MPa].

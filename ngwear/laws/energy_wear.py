@@ -1,4 +1,4 @@
-"""Wear by the work of friction."""
+"""Wear in proportion to the work of friction."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from ngwear.laws.wear_law import NO_FRICTION, Choice, WearLaw, if_positive
 
 @dataclass(frozen=True)
 class FrictionalEnergyWear(WearLaw):
-    """``phi = mu``: depth per work of friction on the same area, ``k_E mu p`` over the distance.
+    """``phi = mu``: depth over sliding distance ``k_E mu p``, in proportion to the work of friction.
 
     The dissipated energy of S. Fouvry, Ph. Kapsa and L. Vincent (Wear 200 (1996) 186), without a threshold. A contact's
     specific wear rate is then k_E, worn volume per work [mm³/mJ = mm²/N]. mu is that of the contact's law of friction
     at the present distance, speed and pressure.
 
-    Takes all of the friction's work for wear, that of hysteresis too.
+    The whole work of friction counts, also the part by hysteresis.
     """
 
     needs_friction = True

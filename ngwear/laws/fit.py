@@ -1,4 +1,4 @@
-"""From a measured friction coefficient over sliding distance to the four phases of lubrication."""
+"""Fit the four phases of lubrication to a measured friction coefficient over sliding distance."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ngwear.errors import SceneError
 from ngwear.laws.lubrication import Lubrication
 
 Array = NDArray[np.float64]
-TRIED = 16  # places tried for the ends of the phases before the best are refined
+TRIED = 16  # places tried for the ends of the phases before the best are refined: 560 starts for three ends
 
 
 @dataclass(frozen=True)
 class LubricationFit:
-    """Four phases and how well they meet the data.
+    """Fitted four phases and their errors against the data.
 
     Attributes
     ----------
@@ -39,8 +39,8 @@ class LubricationFit:
 def fit_lubrication(data: Lubrication | Path | str) -> LubricationFit:
     """Fit a constant film, rising mixed and boundary lubrication, and constant dry friction, by least squares.
 
-    Given where the phases end, mu is a sum of ramps with non-negative heights (NNLS), so that it never falls; the three
-    ends are searched on a grid and refined by the simplex of Nelder & Mead.
+    For given ends of the phases mu is a sum of ramps with non-negative heights (NNLS), so that it never falls. The
+    three ends are searched on a grid and refined by the simplex method of Nelder & Mead.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def fit_lubrication(data: Lubrication | Path | str) -> LubricationFit:
     ends = np.sort(minimize(lambda x: heights(x)[1], start, method="Nelder-Mead", options=options).x)
     (film, mixed, boundary), _ = heights(ends)
     if not film < film + mixed + boundary:
-        raise SceneError("friction.coefficient", float(mu[-1]), "does not rise: these are no phases of starvation")
+        raise SceneError("friction.coefficient", float(mu[-1]), "does not rise: the data show no starving lubrication")
     law = Lubrication.four_phases(
         film=float(film), boundary=float(film + mixed), dry=float(film + mixed + boundary), ends=tuple(ends.tolist())
     )

@@ -1,4 +1,4 @@
-"""Friction by the state of lubrication, over the distance slid since the first dose of lubricant."""
+"""Friction over the sliding distance since the contact was lubricated."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ DISTANCE, COEFFICIENT = "sliding distance [mm]", "friction coefficient [-]"
 class Lubrication(FrictionLaw):
     """Table of mu over the sliding distance, linear between its rows and constant beyond its ends.
 
-    A contact that starves runs through four phases (Bekesi, 10.5772/50498): a film that parts the surfaces (soft
-    elastohydrodynamic, constant), mixed lubrication (rising), boundary lubrication (rising), dry (constant).
+    A contact that loses its lubricant passes four phases (Bekesi, 10.5772/50498): a film that separates the surfaces
+    (soft elastohydrodynamic, constant), mixed lubrication (rising), boundary lubrication (rising), dry (constant).
 
-    Neglects that wear, speed and pressure change how soon the lubricant is used up: a table belongs to one set-up.
+    Neglects that wear, speed and pressure change how fast the lubricant is used up: a table is valid for one set-up.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ class Lubrication(FrictionLaw):
         Parameters
         ----------
         film : float
-            mu while a film parts the surfaces [-].
+            mu while a film separates the surfaces [-].
         boundary : float
             mu where mixed lubrication turns into boundary lubrication [-].
         dry : float

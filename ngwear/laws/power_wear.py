@@ -1,4 +1,4 @@
-"""Wear by a power of the pressure."""
+"""Wear by a power law of the pressure."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class PowerWear(WearLaw):
     """``phi = (p / p_ref)^(m - 1)``: depth over distance ``k p_ref (p / p_ref)^m``.
 
     Rhee's wear equation for polymers at one speed (S.K. Rhee, Wear 16 (1970) 431), common for the abrasion of rubber.
-    The scale p_ref keeps k in mm²/N: it is where the law wears as Archard's with the same k.
+    With the scale p_ref the unit of k is mm²/N: at p = p_ref the law equals Archard's with the same k.
 
-    Valid within the pressures that m was measured at; for m < 1 the wear rate is steep where a contact begins.
+    Valid in the range of pressures in which m was measured. For m < 1 the slope of the wear rate is large near p = 0.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Friction that falls with pressure, as rubber's does."""
+"""Friction that falls with pressure, as on rubber."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from ngwear.laws.base import FrictionLaw, require_number
 
 @dataclass(frozen=True, kw_only=True)
 class ByPressure(FrictionLaw):
-    """``mu = limit + (light - limit) / (1 + p / pressure)^exponent``: adhesion in a real contact that fills up.
+    """``mu = limit + (light - limit) / (1 + p / pressure)^exponent``: adhesion with a saturating real contact area.
 
     With ``exponent = 1`` and ``limit = 0`` it is Thirion's law, 1/mu linear in p (Rev. Gen. Caoutch. 23 (1946) 101);
-    with 1/3 it goes over, far above ``pressure``, to the p^(-1/3) of elastic asperities (Schallamach, Proc. Phys. Soc.
-    B 65 (1952) 657). At p = 0 it stays finite, and so the traction mu p begins in proportion to p.
+    with 1/3 it tends, far above ``pressure``, to the p^(-1/3) of elastic asperities (Schallamach, Proc. Phys. Soc.
+    B 65 (1952) 657). At p = 0 mu is finite, so that the traction mu p starts in proportion to p.
 
     Valid for dry rubber and moderate pressures (Thirion measured below 1 MPa); neglects speed and temperature.
 
     Parameters
     ----------
     light : float
-        mu under the lightest pressure [-], >= 0.
+        mu at pressure 0 [-], >= 0.
     limit : float
-        mu under the highest pressure [-], >= 0.
+        mu at very high pressure [-], >= 0.
     pressure : float
         Scale of the Cauchy pressure [MPa], > 0.
     exponent : float

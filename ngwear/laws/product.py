@@ -1,4 +1,4 @@
-"""Laws that act together."""
+"""Product of several laws of friction."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ from ngwear.laws.base import FrictionLaw
 
 @dataclass(frozen=True, kw_only=True)
 class Product(FrictionLaw):
-    """Product of laws, such as one by lubrication times one by pressure that begins at 1.
+    """Product of laws, for example one by lubrication times one by pressure with ``light = 1``.
 
-    Assumes that each acts as if the others stood still, which holds about one state only.
+    Assumes that the effects are independent, which holds near one state only.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ class Product(FrictionLaw):
         return slope
 
     def _shared(self, held: Sequence[Any]) -> Iterator[tuple[FrictionLaw, Sequence[Any]]]:
-        """Each law with what it holds of ``held``."""
+        """Each law with its part of ``held``."""
         rest = list(held)
         for law in self.factors:
             mine = len(law.held(0.0, 1.0))

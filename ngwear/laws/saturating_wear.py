@@ -14,8 +14,8 @@ from ngwear.laws.wear_law import NO_FRICTION, Choice, WearLaw, if_positive
 class SaturatingWear(WearLaw):
     """``phi = 1 / (1 + p / p_s)``: depth over distance ``k p / (1 + p / p_s)``, at most ``k p_s``.
 
-    Phenomenological: the real contact area of rubber fills up, as in Thirion's law of friction (Rev. Gen. Caoutch. 23
-    (1946) 101), and more pressure then wears no more. Far below p_s it is Archard's law.
+    Phenomenological: the real contact area of rubber saturates, as in Thirion's law of friction (Rev. Gen. Caoutch. 23
+    (1946) 101), and a higher pressure then does not wear more. Far below p_s it is Archard's law.
 
     Parameters
     ----------

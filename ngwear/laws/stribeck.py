@@ -13,9 +13,9 @@ from ngwear.laws.base import FrictionLaw, require_number
 class Stribeck(FrictionLaw):
     """``mu = full + (boundary - full) exp(-(v / speed)^exponent) + viscous v``.
 
-    Boundary lubrication at rest, mixed about ``speed``, beyond it a film whose shear grows with v (Tustin 1947 with
-    exponent 1; Bo & Pavelescu, Wear 82 (1982) 277 with a free one; reviewed by Armstrong-Helouvry, Dupont & Canudas de
-    Wit, Automatica 30 (1994) 1083).
+    Boundary lubrication at rest, mixed lubrication near ``speed``, above it a film whose shear grows with v (Tustin
+    1947 with exponent 1; Bo & Pavelescu, Wear 82 (1982) 277 with a free one; reviewed by Armstrong-Helouvry, Dupont &
+    Canudas de Wit, Automatica 30 (1994) 1083).
 
     Valid for steady sliding at one viscosity and mean pressure, to which ``speed`` belongs (Hersey's number, viscosity
     times speed over pressure, is what counts). Neglects the lag of friction behind speed.
@@ -27,11 +27,11 @@ class Stribeck(FrictionLaw):
     full : float
         mu of the film without its viscous part [-], >= 0.
     speed : float
-        Where boundary lubrication has fallen off to 1/e [mm/s], > 0.
+        Speed at which the boundary term has fallen to 1/e [mm/s], > 0.
     exponent : float
         [-], > 0.
     viscous : float
-        Rise with speed [s/mm], >= 0.
+        Slope of mu with speed [s/mm], >= 0.
 
     Raises
     ------

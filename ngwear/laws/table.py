@@ -14,12 +14,12 @@ Array = NDArray[np.float64]
 
 
 def check_table(place: str, name: str, distance: Sequence[float], values: Sequence[float], *, unit: str) -> None:
-    """Refuse a table that is no function of the distance, or that falls below 0.
+    """Require a table with rising distances and values of at least 0.
 
     Raises
     ------
     SceneError
-        With the row, the value found there and the remedy.
+        Names the row, the value found there and the remedy.
     """
     if len(distance) != len(values):
         raise SceneError(
@@ -32,7 +32,7 @@ def check_table(place: str, name: str, distance: Sequence[float], values: Sequen
             raise SceneError(f"{place}.distance[{i}]", s, "a sliding distance must be at least 0 mm, and finite")
         if i > 0 and not s > distance[i - 1]:
             raise SceneError(
-                f"{place}.distance[{i}]", s, f"distances must rise, but {distance[i - 1]:g} mm stands before: sort them"
+                f"{place}.distance[{i}]", s, f"must be above the row before, {distance[i - 1]:g} mm: sort them"
             )
     for i, value in enumerate(values):
         if not 0 <= value < math.inf:
@@ -40,7 +40,7 @@ def check_table(place: str, name: str, distance: Sequence[float], values: Sequen
 
 
 def area_below(distance: Sequence[float], values: Sequence[float], end: Array) -> Array:
-    """Integral of a table from 0 to each of the distances ``end``, exact; times [mm]."""
+    """Exact integral of a table from 0 to each of the distances ``end``; unit of the values times mm."""
     s, v = np.asarray(distance), np.asarray(values)
     if s[0] > 0:
         s, v = np.insert(s, 0, 0.0), np.insert(v, 0, v[0])

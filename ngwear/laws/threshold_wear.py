@@ -14,8 +14,8 @@ from ngwear.laws.wear_law import NO_FRICTION, Choice, WearLaw, if_positive
 class ThresholdWear(WearLaw):
     """``phi = max(0, 1 - p_0 / p)``: depth over distance ``k max(0, p - p_0)``.
 
-    Phenomenological: what is pressed on less than p_0 does not wear, what is pressed on more wears by the excess. A
-    contact under force whose mean pressure is below p_0 comes to rest unevenly worn.
+    Phenomenological: below p_0 nothing wears, above it wear grows with p - p_0. A contact under constant force whose
+    mean pressure is below p_0 stops wearing before its pressure is even.
 
     Parameters
     ----------

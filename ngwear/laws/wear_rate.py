@@ -1,4 +1,4 @@
-"""Archard's specific wear rate by the state of lubrication."""
+"""Archard's specific wear rate over the sliding distance."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ DISTANCE, RATE = "sliding distance [mm]", "specific wear rate [mm^2/N]"
 class WearRate:
     """Table of k over the sliding distance, linear between its rows and constant beyond its ends.
 
-    A step of wear asks for ``int k ds``, which is exact: a highest rate times the distance that counts at that rate.
+    A step of wear uses the exact ``int k ds``, written as the highest rate times an equivalent distance.
 
     Parameters
     ----------
     distance : tuple of float
-        Sliding distance [mm], >= 0, rising. A scene's ``specific_wear_rate`` that is a number means one row.
+        Sliding distance [mm], >= 0, rising. A number as a contact's ``specific_wear_rate`` means one row.
     rate : tuple of float
         k there [mm²/N], >= 0.
 
@@ -56,7 +56,7 @@ class WearRate:
 
     @property
     def varies(self) -> bool:
-        """Whether there is more than one rate."""
+        """Whether k changes with the distance."""
         return min(self.rate) < max(self.rate)
 
     @property
@@ -69,6 +69,6 @@ class WearRate:
         return float(np.interp(distance, self.distance, self.rate))
 
     def worn_distance(self, starts: Array, travel: float) -> float:
-        """``sum int k ds / highest`` of strokes with one travel that begin at ``starts`` [mm]."""
+        """``sum int k ds / highest`` [mm] of strokes with one travel [mm] that begin at ``starts`` [mm]."""
         ends = area_below(self.distance, self.rate, starts + travel)
         return float((ends - area_below(self.distance, self.rate, starts)).sum() / self.highest)

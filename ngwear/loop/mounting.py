@@ -66,13 +66,13 @@ def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
     if stage.stretched_guess():
         problem.set_loads(loads)
         try:
-            return relax(problem, StepOptions(first=1 / 64), on_step=report)
+            return relax(problem, StepOptions(first=1 / 64), on_step=report)  # a guess: begin with care
         except ConvergenceError as error:
             log.info("%s: mounting by interference instead", error)
             problem.state.vec[:] = 0.0
     problem.set_loads(stage.first_touch())
     try:
-        return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)
+        return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)  # grows while it is easy
     except ConvergenceError as error:
         found = str(error).removesuffix(f"\n{error.report}")
         advice = (

@@ -20,9 +20,10 @@ from ngwear.loop.state import State
 
 Array = NDArray[np.float64]
 
-SHORTEST = 0.4  # of its length at meshing: shorter segments make a new mesh due
-LARGEST_JUMP = 1e-6  # largest change of the section's area by remeshing, relative
-FARTHEST = 1.0  # times ``patch``: largest movement of the outline on one mesh
+# Settled on the rod seal; a mesh beyond them is no wrong one, only a worse one (``Body.move_to`` refuses those).
+SHORTEST = 0.4  # of its length when meshed: how short a segment may become before the outline is tidied
+LARGEST_JUMP = 1e-6  # of the section's area, in a new mesh: rounding leaves 1e-15, a lost point far more
+FARTHEST = 1.0  # of the patch's edge: how far the outline may move on one mesh
 
 
 def is_due(state: State) -> bool:

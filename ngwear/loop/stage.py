@@ -229,7 +229,7 @@ class Stage:
         here = spec.surface.gap(x, y)
         first = int(here.argmin())
         beside = here[max(first - 1, 0) : first + 2]
-        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.lengths.mounting)
+        bite = min(float(beside.max() - here[first]), 0.1 * self.scene.accuracy.lengths.mounting)  # crushes none
         bite += 1e-6 * float(contour.lengths.min())
         travel, reach = 0.0, 10.0 * float(np.ptp(contour.points, axis=0).max())
         for _ in range(500):  # the gap is a distance: a step of this length does not pass the place

@@ -21,7 +21,7 @@ from ngwear.results.quantities_of_interest import AREA, BY_TIME_STEP, DEPTH, FRI
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.program import whole_name
 
-REMAINS = 2.0  # for first order: error over the change by half the time step
+REMAINS = 2.0  # of first order: the error over what halves change, 1 / (1 - 1/2)
 Read = dict[str, dict[str, ArrayLike]]
 
 

@@ -24,8 +24,9 @@ from ngwear.wear.sliding_distance import Strokes
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
-CALM = 0.1  # largest relative error of a step with which it may predict the next one
-AREA_GATE = 0.05  # of a step's worn area: allowed difference of the area removed from a healed outline
+# Beyond, a contact has only begun to spread, or the mesh shows; checked by ``tests/stability`` (wearing.py).
+CALM = 0.1  # error of a step over what it wears, up to which the next one may rely on it
+AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it; a shorter step heals less
 
 
 @dataclass

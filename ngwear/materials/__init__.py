@@ -1,4 +1,4 @@
-"""Rubber models, one a file; they know no mesh."""
+"""Rubber models, one in each file; they do not use a mesh."""
 
 from ngwear.materials.base import Hyperelastic
 from ngwear.materials.mooney_rivlin import MooneyRivlin

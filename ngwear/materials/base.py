@@ -1,4 +1,4 @@
-"""What every rubber model offers."""
+"""Base class of all rubber models."""
 
 from __future__ import annotations
 
@@ -16,8 +16,7 @@ class Hyperelastic(abc.ABC):
 
     ``psi = psi_iso(I1_bar, I2_bar) + K/2 (J - 1)^2`` in MPa, with ``I1_bar = J^(-2/3) I1`` and
     ``I2_bar = J^(-4/3) I2`` of the right Cauchy-Green tensor C (Flory 1961; Holzapfel,
-    *Nonlinear Solid Mechanics*, 2000, section 6.4). Models know no mesh: the same energy takes
-    floats and arrays.
+    *Nonlinear Solid Mechanics*, 2000, section 6.4). Models do not use a mesh: the same energy takes floats and arrays.
 
     Parameters
     ----------
@@ -29,7 +28,7 @@ class Hyperelastic(abc.ABC):
 
     @abc.abstractmethod
     def isochoric_energy(self, i1_bar: Any, i2_bar: Any) -> Any:
-        """Return psi_iso [MPa] of the isochoric invariants, zero at (3, 3)."""
+        """Energy psi_iso [MPa] of the isochoric invariants; zero at (3, 3)."""
 
     @abc.abstractmethod
     def isochoric_slopes(self, i1_bar: Any, i2_bar: Any) -> tuple[Any, Any, Any, Any, Any]:

@@ -1,4 +1,4 @@
-"""From laboratory tables to material constants, each fit with its error over the data."""
+"""Fit material constants to laboratory tables; each fit states its error against the data."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ from ngwear.materials.prony import MOST_ARMS, PronySeries
 from ngwear.materials.shift import WLF
 
 Array = NDArray[np.float64]
-PER_DECADE = (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3, 1.6)  # arms tried
-NOTABLE = 0.9  # a misfit is as good as the best if the best is above this share of it
+PER_DECADE = (0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.3, 1.6)  # arms tried; more overlap: a peak is over a decade wide
+NOTABLE = 0.9  # a misfit is as good as the best if the best is above this share of it: no arms for less
 
 
 class PoorFitWarning(UserWarning):
-    """A fit that misses the tolerance asked for; the best one is returned."""
+    """The fit misses the requested tolerance; the best fit is returned nevertheless."""
 
 
 @dataclass(frozen=True)
 class PronyFit:
-    """Arms, long-term modulus and how well they meet the data.
+    """Fitted Prony series, long-term modulus, and the errors against the data.
 
     Attributes
     ----------
     series : PronySeries
     long_term : float
-        Modulus of the kind that was measured [MPa].
+        Long-term modulus, shear or uniaxial as the data [MPa].
     data : Dma or Relaxation
     misfit : float
         Root mean square of the relative errors, of both moduli for DMA [-].
@@ -51,7 +51,7 @@ class PronyFit:
 
 @dataclass(frozen=True)
 class TensionFit:
-    """Mooney-Rivlin and its relative error over the tension data: root mean square and largest [-]."""
+    """Fitted Mooney-Rivlin model and its relative errors against the tension data: root mean square and largest [-]."""
 
     material: MooneyRivlin
     data: Tension
@@ -61,17 +61,17 @@ class TensionFit:
 
 @dataclass(frozen=True)
 class ShiftFit:
-    """WLF constants, and the factors that bring each curve onto the reference's.
+    """Fitted WLF constants, and the shift factor of each curve.
 
     Attributes
     ----------
     shift : WLF
     temperatures, factors : array, shape (n,)
-        [K] and a_T [-] as found by shifting alone.
+        Temperatures [K] and the factors a_T [-] found by shifting, before the law is fitted.
     misfit : float
-        Root mean square of log10 a_T against the law.
+        Root mean square of the difference of log10 a_T between factors and law [-].
     master : Dma
-        All curves on the reference's frequencies, sorted.
+        Master curve: all curves shifted to the reference temperature, sorted by frequency.
     """
 
     shift: WLF
@@ -82,18 +82,18 @@ class ShiftFit:
 
 
 def fit_dma(data: Dma, *, arms: int | Sequence[float] | None = None, tolerance: float = 0.03) -> PronyFit:
-    """Prony series of a DMA table by non-negative least squares, relative errors of both moduli weighted alike.
+    """Fit a Prony series to a DMA table by non-negative least squares on the relative errors of both moduli.
 
-    Fitted to the storage modulus alone the loss factor, and with it hysteresis friction, comes out wrong.
+    A fit to the storage modulus alone gives a wrong loss factor, and so a wrong hysteresis friction.
 
     Parameters
     ----------
     data : Dma
     arms : int, sequence of float, or None
-        How many, or at which times [s]; by default the fewest whose misfit is as good as the best's of up to 1.6 a
-        decade, or a tenth of ``tolerance``.
+        Number of Maxwell arms, or their relaxation times [s]. By default the fewest arms whose misfit is as small as
+        that of the best fit with up to 1.6 arms per decade, or below a tenth of ``tolerance``.
     tolerance : float
-        Root mean square of the relative error aimed at [-].
+        Root mean square of the relative errors to reach [-].
 
     Warns
     -----
@@ -115,7 +115,7 @@ def fit_dma(data: Dma, *, arms: int | Sequence[float] | None = None, tolerance: 
 
 
 def fit_relaxation(data: Relaxation, *, arms: int | Sequence[float] | None = None, tolerance: float = 0.02) -> PronyFit:
-    """Prony series of a relaxation test, relative errors weighted alike; parameters and warning as in ``fit_dma``."""
+    """Fit a Prony series to a relaxation test by its relative errors; parameters and warning as in ``fit_dma``."""
 
     def columns(times: Array) -> tuple[Array, Array]:
         decay = np.exp(-data.time[:, None] / times) / data.modulus[:, None]
@@ -142,7 +142,7 @@ def _fit(data: Any, columns: Any, shortest: float, longest: float, arms: Any, to
         raise SceneError(
             "long-term modulus",
             float(moduli[0]),
-            "the data reach no plateau, the fit leaves nothing that carries load for ever: measure at longer times "
+            "the data reach no plateau, so that the fitted long-term modulus is zero: measure at longer times "
             "or lower frequencies",
         )
     if not (moduli[1:] > 0).any():
@@ -173,7 +173,7 @@ def _solve(columns: Any, times: Array) -> tuple[Array, Array, float, float]:
 
 
 def _refined(columns: Any, times: Array) -> tuple[Array, Array, float, float]:
-    """Like ``_solve``, the times moved to where they fit best (variable projection: moduli follow by least squares)."""
+    """Like ``_solve``, but the times are fitted too (variable projection: moduli follow by least squares)."""
 
     def errors(logs: Array) -> Array:
         matrix, goal = columns(np.exp(logs))
@@ -188,15 +188,15 @@ def _refined(columns: Any, times: Array) -> tuple[Array, Array, float, float]:
 
 
 def fit_tension(data: Tension, *, bulk_ratio: float = 1000.0, tolerance: float = 0.05) -> TensionFit:
-    """Mooney-Rivlin from uniaxial tension: ``P = 2 (lambda - lambda^-2) (C10 + C01 / lambda)``, relative errors.
+    """Fit Mooney-Rivlin to uniaxial tension, ``P = 2 (lambda - lambda^-2) (C10 + C01 / lambda)``, by relative errors.
 
-    C01 is kept at least 0, as tension alone determines it poorly and a negative one is unstable in compression.
+    C01 is at least 0: tension alone determines it poorly, and a negative C01 is unstable in compression.
 
     Parameters
     ----------
     data : Tension
     bulk_ratio : float
-        K / G [-]; tension says nothing about it.
+        K / G [-]; a tension test does not determine it.
     tolerance : float
         Root mean square of the relative error above which a ``PoorFitWarning`` is given [-].
     """
@@ -256,7 +256,7 @@ def fit_wlf(curves: Sequence[Dma], *, reference: float) -> ShiftFit:
     slope, offset = np.polyfit(distance, -distance / logs[away], 1)
     if not (slope > 0 and offset > 0):
         raise SceneError(
-            "curves", logs.tolist(), "the factors do not follow a WLF law; take an Arrhenius law, or a wider range"
+            "curves", logs.tolist(), "the factors do not follow a WLF law; use an Arrhenius law, or a wider range"
         )
     law = WLF(1 / slope, offset / slope, float(temperatures[home]))
     misfit = float(
@@ -273,13 +273,13 @@ def fit_wlf(curves: Sequence[Dma], *, reference: float) -> ShiftFit:
 
 
 def _shift_between(fixed: Dma, moving: Dma) -> float:
-    """Log10 of the factor on the moving curve's frequencies that lays it best over the fixed one."""
+    """Log10 of the frequency factor with which the moving curve agrees best with the fixed one."""
     x, y = np.log10(fixed.frequency), np.log10(moving.frequency)
     span = min(np.ptp(x), np.ptp(y))
 
     def mismatch(shift: float) -> float:
         low, high = max(x[0], y[0] + shift), min(x[-1], y[-1] + shift)
-        if high - low < 0.15 * span:
+        if high - low < 0.15 * span:  # too little in common to tell a shift by
             return 1e3 + abs(shift)
         at = np.linspace(low, high, 50)
         parts = []

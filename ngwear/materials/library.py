@@ -1,4 +1,4 @@
-"""Rubber compounds to start from, each constant with its source. None was measured for ngwear."""
+"""Rubber compounds as a first estimate, each constant with its source. None was measured for ngwear."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ GENT = "Gent, Rubber Chem. Technol. 31 (1958) 896: Young's modulus from Shore A 
 FILLED = (
     "representative, not measured: non-negative Prony fit, one arm a decade, to a public filled-rubber master curve"
 )
-ROOM = 296.15  # K
+ROOM = 296.15  # K: 23 degrees Celsius, the standard atmosphere of ISO 23529
 
-# Uniaxial moduli [MPa] of the arms at 3.16e-7 ... 31.6 s, and the long-term one.
+# Uniaxial moduli [MPa] of the arms at 3.16e-7 ... 31.6 s, and the long-term one: see ``FILLED``.
 FILLED_ARMS = (31.59, 8.066, 5.818, 3.336, 2.444, 1.852, 1.133, 1.311, 1.070)
 FILLED_TIMES = tuple(10 ** (k + 0.5) for k in range(-7, 2))
 FILLED_LONG_TERM = 5.352
@@ -28,20 +28,20 @@ CONDUCTIVITY = {"EPDM": 0.26, "NBR": 0.25, "HNBR": 0.25, "FKM": 0.10}  # W/(m K)
 
 @dataclass(frozen=True, kw_only=True)
 class Compound:
-    """A rubber: what carries for ever, what relaxes, and how temperature shifts it.
+    """A rubber compound: long-term elasticity, relaxation, and the time-temperature shift.
 
     Attributes
     ----------
     name : str
     elastic : MooneyRivlin
-        Long-term behaviour.
+        Long-term (relaxed) elasticity.
     prony : PronySeries
-        Arms relative to it, at the shift's reference temperature.
+        Relaxation relative to it, at the reference temperature of ``shift``.
     shift : WLF
     constants : mapping of str to float
-        Others, named with their units.
+        Further constants, by names with units.
     sources : mapping of str to str
-        For each of the above, and each constant, where it comes from.
+        Source of each attribute above and of each constant.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Compound:
     sources: Mapping[str, str]
 
     def at(self, temperature: float) -> PronySeries:
-        """Arms at a temperature [K]."""
+        """Prony series at a temperature [K]."""
         return self.prony.shifted(self.shift.factor(temperature))
 
 
@@ -67,7 +67,7 @@ def young_from_hardness(shore_a: float) -> float:
 
 
 def filled_rubber() -> Compound:
-    """Nearly flat loss factor from 0.1 to 1000 Hz (0.11 to 0.18), as case C2 asks for; 9 arms, K = 2000 MPa."""
+    """Filled rubber with a nearly flat loss factor from 0.1 to 1000 Hz (0.11 to 0.18); 9 arms, K = 2000 MPa."""
     sum_of_constants = FILLED_LONG_TERM / 6
     return Compound(
         name="filled rubber",
@@ -83,11 +83,11 @@ def filled_rubber() -> Compound:
 
 
 def relaxation_of(name: str) -> tuple[PronySeries, WLF]:
-    """Arms and shift of a compound by name: ``"filled rubber"``, or a polymer (whose arms are the filled rubber's)."""
+    """Prony series and shift of ``"filled rubber"``, or of a polymer (with the filled rubber's Prony series)."""
     if name == "filled rubber":
         found = filled_rubber()
     elif name in GLASS:
-        found = compound(name, hardness=70.0)  # of which the arms' ratios know nothing
+        found = compound(name, hardness=70.0)  # the ratios of the arms do not depend on it
     else:
         raise SceneError("material.prony.compound", name, f"known: 'filled rubber', {', '.join(GLASS)}")
     return found.prony, found.shift
@@ -96,8 +96,8 @@ def relaxation_of(name: str) -> tuple[PronySeries, WLF]:
 def compound(polymer: str, *, hardness: float) -> Compound:
     """A seal compound by polymer (EPDM, NBR, HNBR, FKM) and Shore A hardness.
 
-    The long-term modulus follows from the hardness, as a hardness test lasts seconds; the arms are the filled
-    rubber's at 296 K, and the polymer's glass temperature shifts them. Only as good as a first guess.
+    The long-term modulus follows from the hardness (a hardness test lasts seconds). The Prony series is the filled
+    rubber's at 296 K, shifted by the polymer's glass temperature. Use it as a first estimate only.
     """
     if polymer not in GLASS:
         raise SceneError("material.compound", polymer, f"known: {', '.join(GLASS)} and 'filled rubber'")

@@ -1,4 +1,4 @@
-"""Tables from the laboratory, read from CSV files and checked: DMA, stress relaxation, uniaxial tension."""
+"""Laboratory tables, read from CSV files and checked: DMA, stress relaxation, uniaxial tension."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from ngwear.errors import SceneError
 from ngwear.files.columns import read_columns
 
 Array = NDArray[np.float64]
-SOFTEST, STIFFEST = 0.05, 5e3  # MPa: from a gel to a glass; rubber tables outside are in another unit
+SOFTEST, STIFFEST = 0.05, 5e3  # MPa, from a gel to a glass: a table outside is in another unit
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class Dma:
     Raises
     ------
     SceneError
-        For values that cannot be right, with the likely reason.
+        For impossible values, with the likely cause.
     """
 
     frequency: Array

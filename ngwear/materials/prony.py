@@ -1,4 +1,4 @@
-"""Generalised Maxwell model: the arms of a Prony series, relative to the long-term stiffness."""
+"""Generalised Maxwell model (Prony series), relative to the long-term stiffness."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from numpy.typing import NDArray
 from ngwear.errors import SceneError, check_fields
 
 Array = NDArray[np.float64]
-MOST_ARMS = 40
+MOST_ARMS = 40  # two a decade over twenty decades: the whole of the glass transition
 
 
 @dataclass(frozen=True)
 class PronySeries:
     """``G(t) / G_inf = 1 + sum_i gamma_i exp(-t / tau_i)``: a spring and n Maxwell arms in parallel.
 
-    The same arms act on the whole isochoric stress of a hyperelastic model (finite linear viscoelasticity:
+    The same ratios apply to the whole isochoric stress of a hyperelastic model (finite linear viscoelasticity:
     Simo, Comput. Methods Appl. Mech. Eng. 60 (1987) 153; Holzapfel, *Nonlinear Solid Mechanics*, 2000,
-    section 6.10). Volume changes stay elastic. It neglects that filled rubber's loss depends on the amplitude
-    (Payne effect).
+    section 6.10). Volume changes stay elastic. The model neglects that the loss of filled rubber depends on the
+    amplitude (Payne effect).
 
     Parameters
     ----------
@@ -65,14 +65,14 @@ class PronySeries:
 
     @classmethod
     def from_moduli(cls, moduli: Sequence[float], times: Sequence[float], *, long_term: float) -> PronySeries:
-        """Arms from absolute moduli, shear or uniaxial, and the long-term modulus of the same kind [MPa]."""
+        """Series from absolute moduli, shear or uniaxial, and the long-term modulus of the same kind [MPa]."""
         if not 0 < long_term < math.inf:
             raise SceneError("material.prony.long_term", long_term, "must be finite and greater than 0 MPa")
         return cls(tuple(m / long_term for m in moduli), tuple(times))
 
     @classmethod
     def from_shares(cls, shares: Sequence[float], times: Sequence[float]) -> PronySeries:
-        """Arms from shares g_i = G_i / G_0 of the **instantaneous** modulus, as many programs take them; sum < 1."""
+        """Series from shares g_i = G_i / G_0 of the **instantaneous** modulus, as in many programs; sum < 1."""
         rest = 1 - sum(shares)
         if not rest > 0:
             raise SceneError(
@@ -129,19 +129,20 @@ class PronySeries:
         return PronySeries(self.ratios, tuple(factor * t for t in self.times))
 
     def folded(self, *, shortest: float, longest: float, tolerance: float = 1e-3) -> Folding:
-        """Fold away the arms that a simulation between two times cannot tell from a spring or from nothing.
+        """Leave out relaxation times that are too fast or too slow for a simulation between two times.
 
-        An arm with ``tau << shortest`` has always relaxed: dropping it misses at most ``gamma tau / shortest`` of
-        stress for processes no faster than ``shortest``. One with ``tau >> longest`` never relaxes: as a spring
-        it is wrong by at most ``gamma longest / tau``. Arms are folded, the cheapest first, while the sum of these
-        bounds stays below ``tolerance`` of the stiffness ``G(longest)``.
+        An arm with ``tau << shortest`` (fast) relaxes at once and is dropped: the error of stress is at most ``gamma
+        tau / shortest`` for processes no faster than ``shortest``. An arm with ``tau >> longest`` (slow) does not relax
+        within the simulation and becomes part of the elastic stiffness: the error is at most ``gamma longest / tau``.
+        Arms are left out in the order of these bounds, as long as their sum stays below ``tolerance`` times the
+        stiffness ``G(longest)``.
 
         Parameters
         ----------
         shortest : float
-            Fastest process to be resolved [s], e.g. the passage of an asperity over 2 pi.
+            Duration of the fastest process to resolve [s], e.g. the time in which an asperity passes, divided by 2 pi.
         longest : float
-            Whole duration [s].
+            Duration of the whole simulation [s].
         tolerance : float
             Allowed error of stress [-].
         """
@@ -168,18 +169,18 @@ class PronySeries:
 
 @dataclass(frozen=True)
 class Folding:
-    """What ``PronySeries.folded`` found.
+    """Result of ``PronySeries.folded``: which relaxation times are kept and which are left out.
 
     Attributes
     ----------
     kept : PronySeries
-        Arms with memory, relative to the stiffened spring.
+        Arms that are solved, relative to the long-term stiffness times ``stiffening``.
     stiffening : float
-        Factor on the long-term moduli: the slow arms as springs [-].
+        Factor on the long-term moduli, which adds the stiffness of the slow arms [-].
     fast, slow : tuple of float
-        Times of the arms that were dropped, and of those that became springs [s].
+        Relaxation times left out [s]: fast ones relax at once, slow ones are part of the elastic stiffness.
     bound : float
-        Largest error of stress over the long-term stress of the same strain [-].
+        Bound of the error of stress, relative to the stress after ``longest`` at the same strain [-].
     """
 
     kept: PronySeries
@@ -189,7 +190,7 @@ class Folding:
     bound: float
 
     def fate(self, time: float) -> str:
-        """What became of the arm of a relaxation time [s], in words."""
+        """How a relaxation time [s] is treated, in words."""
         if time in self.fast:
-            return "folded to nothing: it has always relaxed"
-        return "folded into the elastic part: it never relaxes" if time in self.slow else "kept"
+            return "left out: it relaxes at once"
+        return "part of the elastic stiffness: it does not relax in this time" if time in self.slow else "kept"

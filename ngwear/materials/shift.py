@@ -1,4 +1,4 @@
-"""Time-temperature superposition: how much slower rubber relaxes when it is colder."""
+"""Time-temperature superposition: factor a_T on all relaxation times at another temperature."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ngwear.errors import SceneError, check_fields
 
-GAS_CONSTANT = 8.31446261815324  # J/(mol K)
+GAS_CONSTANT = 8.31446261815324  # J/(mol K), exact since 2019 (SI)
 MOST_DECADES = 30.0  # of a shift: beyond the whole of the glass transition
 
 
@@ -15,7 +15,7 @@ MOST_DECADES = 30.0  # of a shift: beyond the whole of the glass transition
 class WLF:
     """``log10 a_T = -C1 (T - T_r) / (C2 + T - T_r)`` (Williams, Landel & Ferry, J. Am. Chem. Soc. 77 (1955) 3701).
 
-    Good from the glass transition to about 100 K above it.
+    Valid from the glass transition to about 100 K above it.
 
     Parameters
     ----------
@@ -39,11 +39,11 @@ class WLF:
 
     @classmethod
     def above_glass(cls, glass: float, reference: float) -> WLF:
-        """Universal constants 17.44 and 51.6 K at the glass temperature, moved to another reference [K]."""
+        """Law with the universal constants 17.44 and 51.6 K at the glass temperature, for another reference [K]."""
         return cls(17.44, 51.6, glass).moved(reference)
 
     def moved(self, reference: float) -> WLF:
-        """Same curve about another reference temperature [K]."""
+        """The same law with another reference temperature [K]."""
         distance = self._above_the_pole(reference)
         return WLF(self.c1 * self.c2 / distance, distance, reference)
 
@@ -72,7 +72,7 @@ class WLF:
 
 @dataclass(frozen=True)
 class Arrhenius:
-    """``ln a_T = E_a / R (1/T - 1/T_r)``: for temperatures far above the glass transition.
+    """``ln a_T = E_a / R (1/T - 1/T_r)``, for temperatures far above the glass transition.
 
     Parameters
     ----------
@@ -97,5 +97,5 @@ class Arrhenius:
             raise SceneError("temperature", temperature, "must be greater than 0 K")
         exponent = self.activation_energy / GAS_CONSTANT * (1 / temperature - 1 / self.reference)
         if not exponent < MOST_DECADES * math.log(10):
-            raise SceneError("temperature", temperature, "slows relaxation beyond all measure; give it in K")
+            raise SceneError("temperature", temperature, "slows relaxation by more than 30 decades; give it in K")
         return math.exp(exponent)

@@ -1,4 +1,4 @@
-"""A rubber some of whose relaxation is too slow to be seen: its slow arms act as springs."""
+"""A rubber whose slowest relaxation times are part of the elastic stiffness."""
 
 from __future__ import annotations
 

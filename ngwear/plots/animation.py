@@ -21,11 +21,11 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 FILE = "evolution.gif"
-FRAMES = 120
+FRAMES = 120  # at most: some MB
 LENGTH, HELD = 10.0, 1.5  # seconds: of the whole, as far as the rates allow, and of the last picture
 SLOWEST, FASTEST = 3, 12  # frames a second
 DOTS = 110  # per inch
-DEEP = 0.02  # of the largest depth: from there on a place counts as worn
+DEEP = 0.02  # of the largest depth: from there on a place counts as worn, and is shown
 
 
 def animate(folder: Path | str, *, progress: bool = False) -> Path:

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 STRESS = "stress xx, yy, xy [MPa]"
 PRINCIPAL = (MaximumPrincipalStress.name, Fatigue.name)
 NEAR = 2.0  # times the highest pull: a critical stress beyond that would leave the section pale
-LEAST = 1e-3  # MPa
+LEAST = 1e-3  # MPa: top of the colours of a section that nothing pulls
 BEHIND = 0.06  # of the window's width: how much of the rubber behind the face is shown besides
 ROD = 0.4  # of that: how much of what lies before the face
 

@@ -27,8 +27,8 @@ LOST = (
     (Fate.DISTORTED, "too distorted", "#d98324"),
     (Fate.LOOSE, "come loose", "#7f5fa8"),
 )
-STATIONS = 2001
-RIDGE = 16  # elements' sides: how wide the window on a ridge is
+STATIONS = 2001  # along the face: more than pixels
+RIDGE = 16  # elements' sides: how wide the window on a ridge is; single elements are seen
 WIDEST, LEAST = 9.6, 0.6  # inches: of the panels of a figure, and the least height of one
 
 

@@ -14,14 +14,15 @@ from ngwear.profiles.measured import FEWEST, Profile
 from ngwear.profiles.worn_edge import FAR, WornEdge
 
 Array = NDArray[np.float64]
-STEEPEST = np.radians(15.0)
-OVERLAP = 0.6  # of the shorter of profile and edge
+STEEPEST = np.radians(15.0)  # tilt that is sought: far more than a levelled profile has
+OVERLAP = 0.6  # of the shorter of profile and edge: less in common fits by chance
+# Shifts, shares of the run's distance and points of a first search on a grid, which only has to find the right hollow.
 SHIFTS, TRIED, THINNED = 400, (0.0, 0.05, 0.15, 0.4, 0.7, 1.0, 2.0), 400
-NEAR = 0.1  # of the edge's length: how far the shift may move from the best one tried
-AS_GOOD = 1.2  # times the least mean square: among such shifts the smallest is taken
+NEAR = 0.1  # of the edge's length: how far the shift may move from the best one tried; tens of steps
+AS_GOOD = 1.2  # times the least mean square: among such shifts the smallest is taken; a flat slides along itself
 ROUNDS = 4  # which points lie on the edge, and how large the noise is, are found again in each
-NO_NOISE = 1e-7  # mm
-OUTLIER = 8.0  # times the noise
+NO_NOISE = 1e-7  # mm: an atom, and no profilometer's noise; profiles that were computed have none
+OUTLIER = 8.0  # times the noise: of a million points, none by chance, nor by waviness that is no dust
 
 
 @dataclass(frozen=True)
@@ -118,6 +119,7 @@ def align(profile: Profile, edge: WornEdge) -> Alignment:
         over = (place >= edge.place[0]) & (place <= edge.place[-1])
         on = over if over.sum() >= FEWEST else on
         left = residuals(p, on)
+        # 1.4826 makes a standard deviation of the median of absolute deviations, for normal noise.
         noise = max(1.4826 * float(np.median(np.abs(left - np.median(left)))), NO_NOISE)
         found = least_squares(
             residuals, p, bounds=(low, high), x_scale=scale, loss="soft_l1", f_scale=noise, args=(on,), max_nfev=200

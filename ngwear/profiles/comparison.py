@@ -19,9 +19,11 @@ from ngwear.profiles.worn_edge import WornEdge, read_worn_edge
 
 Array = NDArray[np.float64]
 COMPARISON = "measured.json"
+# Between a symmetric profile, which fits as well either way, and a wrong one, which fits many times better once turned.
 FAR_BETTER = 0.6  # a misfit below this share of another's
-BEYOND = 1.05  # of the run's distance: further, the fit rests on no computed outline
-POOR = 0.5  # a misfit beyond which profile and outline hardly resemble each other
+BEYOND = 1.05  # of the run's distance: further, the fit rests on no computed outline; 5 % are extrapolated in silence
+POOR = 0.5  # a misfit, over the heights' spread, beyond which profile and outline hardly resemble each other
+# A note, no more: a levelled profile that begins where it should lies within them.
 LARGE_TILT, LARGE_SHIFT = np.radians(3.0), 0.1  # the shift as a share of the profile's length
 
 

@@ -23,7 +23,7 @@ FAMILIES: dict[str, tuple[Callable[[float, float], WearLaw], Array]] = {
     "threshold": (lambda q, p: ThresholdWear(pressure=q * p), np.linspace(0.0, 0.95, 20)),
     "saturating": (lambda q, p: SaturatingWear(pressure=q * p), np.geomspace(0.02, 50.0, 25)),
 }
-PRECISE = 1e-4  # of a number between two that were tried
+PRECISE = 1e-4  # of a number between two that were tried: far below what a profile's noise tells
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from ngwear.errors import SceneError
 
 Array = NDArray[np.float64]
 UNITS = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3}  # micro sign and Greek mu
-FEWEST = 20
-LARGEST_HOLE = 0.1  # of the profile's length, beyond which a note says so
+FEWEST = 20  # points: five for each of the four numbers that are fitted
+LARGEST_HOLE = 0.1  # of the profile's length, beyond which a note says so: areas may then err by as much
 WRONG_UNIT = 1000**0.5  # beyond, a ratio is nearer to 1000 than to 1
 
 

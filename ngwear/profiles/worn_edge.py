@@ -15,10 +15,10 @@ from ngwear.errors import ResultError, SceneError
 from ngwear.results.result_file import ResultFile, read_result
 
 Array = NDArray[np.float64]
-STATIONS = 4001
-ALIGNED = np.radians(15.0)  # an edge less inclined is looked at along the scene's axis
-FAR = 10.0  # of the run's sliding distance: how far the fit may look beyond its end
-HIDDEN = 0.02  # of the edges' length that another part of the outline may hide
+STATIONS = 4001  # along the edge: as many as a profilometer takes
+ALIGNED = np.radians(15.0)  # an edge less inclined is looked at along the scene's axis; depths differ by 4 % at most
+FAR = 10.0  # of the run's sliding distance: how far the fit may look beyond its end; only to say that it ran too short
+HIDDEN = 0.02  # of the edges' length that another part of the outline may hide: rounding at their ends, no more
 
 
 @dataclass(frozen=True)

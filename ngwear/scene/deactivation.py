@@ -25,7 +25,7 @@ class DistortionFilter:
         Largest allowed cosine of a corner angle [-]; an inverted element counts as 1.
     """
 
-    corner_cosine: float = 0.99
+    corner_cosine: float = 0.99  # a corner of 8 degrees
 
     def __post_init__(self) -> None:
         check_fields(self, "deactivation.distortion")

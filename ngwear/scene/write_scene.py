@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import tomli_w
 
@@ -17,14 +17,10 @@ from ngwear.scene.read_laws import FRICTION_LAWS, WEAR_LAWS
 from ngwear.scene.read_material import MATERIALS
 from ngwear.surfaces import Cylinder, Plane
 
-if TYPE_CHECKING:
-    from ngwear.scene.pin_scene import PinScene
-    from ngwear.scene.scene import Scene
-
 Table = dict[str, Any]
 
 
-def write_wear_scene(scene: Scene, path: Path) -> None:
+def write_wear_scene(scene: Any, path: Path) -> None:
     """Write a scene to NAME.toml, and its outline to ``NAME.contour.toml`` in the same folder.
 
     Raises
@@ -57,8 +53,8 @@ def write_wear_scene(scene: Scene, path: Path) -> None:
     _write(path, text)
 
 
-def write_pin_scene(scene: PinScene, path: Path) -> None:
-    """Write a scene of a pin on a plate.
+def write_pin_scene(scene: Any, path: Path) -> None:
+    """Write a ``PinScene``.
 
     Raises
     ------

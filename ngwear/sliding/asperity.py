@@ -19,8 +19,9 @@ from ngwear.materials import Hyperelastic, PronySeries
 from ngwear.sliding.block import Block, march, meshed_block
 
 Array = NDArray[np.float64]
+# These, and the factors in ``slide`` and ``_block``, were settled on the cases ``hunter`` and ``three_arms``.
 WAKES = 4.0  # depth of a block over the length of its wake; a thinner one reads 6 % low and more
-LONGEST_WAKE = 100.0  # half lengths
+LONGEST_WAKE = 100.0  # half lengths: what recovers more slowly is too shallow to matter
 ROUGH, COARSE = 1e-2, 4  # tolerance and fineness of the solve that only looks for the contact's ends
 NEAR, FAR = 0.25, 0.5  # steepest growth of the elements around the contact, and beyond
 AROUND = 8.0  # the contact: half lengths

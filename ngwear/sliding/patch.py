@@ -13,7 +13,8 @@ from ngwear.errors import SceneError
 from ngwear.surfaces import Sphere
 
 Array = NDArray[np.float64]
-RAYS = 72
+RAYS = 72  # to the edge, 5 degrees apart: a circle's area by them is within 0.13 %
+# These three were settled on the pin: the error of its area is stated at 1.8 times the true one (error_estimates).
 DEGREE = 4  # of the polynomial
 SPLIT = 6  # parts of a face's sides: 36 points a face
 WELL = 0.15  # of the highest pressure: faces from which the fit starts

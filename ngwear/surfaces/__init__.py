@@ -1,4 +1,4 @@
-"""Rigid counter-surfaces given by their gap, one a file; they know no mesh."""
+"""Rigid counter-surfaces, given by their gap function, one in each file; they do not use a mesh."""
 
 from ngwear.surfaces.base import RigidSurface
 from ngwear.surfaces.cylinder import Cylinder

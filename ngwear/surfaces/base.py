@@ -1,4 +1,4 @@
-"""What every rigid counter-surface offers."""
+"""Base class of all rigid counter-surfaces."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from ngwear.errors import SceneError
 
 @dataclass(frozen=True, kw_only=True)
 class RigidSurface(abc.ABC):
-    """A rigid body given by its signed distance: positive outside it, where the rubber may be.
+    """A rigid body, given by the signed distance from it: positive outside, on the side of the rubber.
 
-    A place is two coordinates (x, y), of a solid three, as floats, arrays or coefficient functions; in an
-    axisymmetric scene x is the axial and y the radial coordinate. Surfaces know no mesh.
+    A place is given by the coordinates x and y [mm], for a solid x, y and z, as floats, arrays or coefficient
+    functions. In an axisymmetric scene x is the axial and y the radial coordinate. Surfaces do not use a mesh.
     """
 
     @abc.abstractmethod
@@ -24,7 +24,7 @@ class RigidSurface(abc.ABC):
 
     @abc.abstractmethod
     def normal(self, *place: Any) -> tuple[Any, ...]:
-        """Unit normal at the foot of a place, pointing out of the rigid body: the gradient of the gap."""
+        """Unit normal at the nearest surface point, out of the rigid body: the gradient of the gap."""
 
     @property
     @abc.abstractmethod
@@ -37,28 +37,29 @@ class RigidSurface(abc.ABC):
         return ny, -1 * nx
 
     def along(self, *place: Any) -> Any:
-        """Coordinate along the surface of the foot of a place [mm], growing along the approach turned by +90 degrees.
+        """Coordinate along the surface of its point nearest to a place [mm]; it grows along ``approach`` turned by
+        +90°.
 
         Raises
         ------
         SceneError
-            For a surface that is no curve.
+            For a surface that is not a curve.
         """
-        raise SceneError("surface", type(self).__name__, "has no coordinate along it, and so no worn profile")
+        raise SceneError("surface", type(self).__name__, "has no coordinate along it and cannot have a worn profile")
 
     def motion(self, *place: Any) -> tuple[Any, ...]:
-        """Velocity of the body that carries the surface, over its own speed along a track [-].
+        """Velocity of the rigid body over its speed along the track [-].
 
         Raises
         ------
         SceneError
-            For a surface that runs along no track.
+            For a surface without a track.
         """
-        raise SceneError("surface", type(self).__name__, "runs along no track")
+        raise SceneError("surface", type(self).__name__, "does not move along a track")
 
     @property
     def length(self) -> float:
-        """Once around a closed curve [mm]; infinite for an open one."""
+        """Length of a closed curve [mm]; infinite for an open one."""
         return math.inf
 
     def tangents(self, *place: Any) -> tuple[tuple[Any, ...], ...]:

@@ -13,7 +13,7 @@ from ngwear.surfaces.base import RigidSurface
 
 @dataclass(frozen=True, kw_only=True)
 class Plane(RigidSurface):
-    """Half-space behind ``point``, its unit ``normal_vector`` pointing at the rubber.
+    """Half-space with the surface point ``point`` and the unit ``normal_vector``, which points at the rubber.
 
     gap = (X - point) . normal. In the meridian plane (x axial, y radial) a rod of radius R is the plane
     through (0, R) with normal (0, 1), a bore that with normal (0, -1), a shoulder one with normal (+-1, 0).

@@ -25,8 +25,8 @@ class Sphere(RigidSurface):
     radius : float
         [mm].
     track_radius : float
-        Of the circle that the ball runs along [mm], counter-clockwise about the vertical axis that lies this far from
-        its centre on its left; infinite for a straight track.
+        Radius of the circular track [mm]; the ball moves counter-clockwise, and the vertical axis of the circle lies at
+        this distance on its left. Infinite for a straight track.
 
     Raises
     ------
@@ -59,7 +59,7 @@ class Sphere(RigidSurface):
         return 1.0 - y / self.track_radius, x / self.track_radius, 0.0 * x
 
     def tangent(self, *place: Any) -> tuple[Any, ...]:
-        """Unit direction in which the ball's surface moves, the part along the surface's normal taken off."""
+        """Unit direction in which the ball moves, projected on its surface."""
         motion = self.motion(*place)
         nx, ny, nz = self.normal(*place)
         off = motion[0] * nx + motion[1] * ny

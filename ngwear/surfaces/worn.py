@@ -15,10 +15,10 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class WornProfile:
-    """Depth worn off a rigid surface, over the coordinate along it in its own frame; 0 where nothing touched it.
+    """Worn depth of a rigid surface, over the coordinate along it in its own frame; 0 where nothing touched it.
 
     The depth is linear between points at whole multiples of ``spacing``; on an open curve it is 0 at the first and the
-    last of them, a closed one begins to be followed all around when it first turns (``swept``).
+    last point. On a closed curve the points go all around from its first turn on (``swept``).
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class WornProfile:
     depth : array, shape (n,)
         Depth along the surface's normal [mm].
     length : float
-        Once around a closed curve [mm], a whole multiple of the spacing (see ``of``).
+        Length of a closed curve [mm], a whole multiple of the spacing (see ``of``).
     """
 
     spacing: float
@@ -39,7 +39,7 @@ class WornProfile:
 
     @classmethod
     def of(cls, surface: RigidSurface, spacing: float) -> WornProfile:
-        """An unworn surface, its points ``spacing`` [mm] apart, or a little less, so that an even number closes it."""
+        """An unworn profile; points ``spacing`` [mm] apart, or a little less: an even number on a closed curve."""
         around = surface.length
         return cls(spacing if math.isinf(around) else around / (2 * math.ceil(around / spacing / 2)), length=around)
 
@@ -60,10 +60,10 @@ class WornProfile:
         return np.interp(along, self.along, self.depth, left=0.0, right=0.0)
 
     def worn(self, ends: Array, depth: Array) -> WornProfile:
-        """Return the profile with wear added that is linear along each of some pieces.
+        """The profile with added wear, which is linear along each given piece.
 
-        Each point takes ``int depth phi ds / spacing`` with its hat function phi, so that the area grows by exactly
-        what is added.
+        Each point takes ``int depth phi ds / spacing`` with its hat function phi, so that the worn area grows by
+        exactly the added area.
 
         Parameters
         ----------
@@ -87,9 +87,9 @@ class WornProfile:
         return replace(wider, depth=wider.depth + share)
 
     def swept(self, ends: Array, depth: Array, ways: Array) -> WornProfile:
-        """Return the profile with the wear added of moving along itself under some pieces that stand still.
+        """The profile with added wear, when the surface moves along itself under pieces that stand still.
 
-        Each point takes ``int depth dx`` over the places x that it passes. What is added is exact: the integral of
+        Each point takes ``int depth dx`` over the places x that it passes. The added area is exact: the integral of
         ``depth`` times the length of the ways.
 
         Parameters

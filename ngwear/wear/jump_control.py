@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 GROWTH = 2.0  # with STRETCH below 1 + sqrt 2, up to which backward differences of second order are stable
-SAFETY = 0.9
-STRETCH = 1.2  # how much longer a step may become so that one less remains
+SAFETY = 0.9  # usual in step control: 1 would have every other step taken back
+STRETCH = 1.2  # how much longer a step may become so that one less remains; 1.25 with growth of 3 was unstable
 
 
 @dataclass
@@ -52,7 +52,7 @@ class JumpControl:
 
     def accepts(self, ratio: float, cycles: int) -> bool:
         """Whether a step with this error ratio stands; single cycles always do."""
-        return cycles == 1 or not ratio > 2 * self.tolerance
+        return cycles == 1 or not ratio > 2 * self.tolerance  # taking it back costs a solve; the estimate is safe
 
     def update(self, ratio: float, cycles: int, depth: float = 0.0) -> None:
         """Set the next number of cycles after a step of ``cycles``.
@@ -65,7 +65,7 @@ class JumpControl:
         elif off == 0:
             factor = GROWTH
         else:
-            factor = min(GROWTH, max(0.3, SAFETY / math.sqrt(off)))
+            factor = min(GROWTH, max(0.3, SAFETY / math.sqrt(off)))  # far off, the square law says little
         self.cycles = int(min(self.longest, max(1, math.floor(factor * cycles + 1e-9))))
 
     def cut(self, cycles: int) -> int:

@@ -60,6 +60,7 @@ def subject(kind, setting, jump, name):
     """One run, as JSON on the last line."""
     from ngwear.error_estimates.run_to_error import at_level
     from ngwear.loop.run import run
+    from ngwear.scene.accuracy import Accuracy
     from ngwear.scene.read_scene import read_scene
 
     scene = read_scene(GEOMETRIES / name / "scene.toml")
@@ -69,7 +70,7 @@ def subject(kind, setting, jump, name):
         if kind == "reference":
             scene = replace(scene, accuracy=replace(scene.accuracy, longest_jump=STEP))
     else:
-        own = scene.accuracy
+        own = Accuracy() if scene.accuracy.error is not None else scene.accuracy  # the usual lengths
         lengths = {"patch": setting, "mounting": max(setting, own.mounting), "coarse": max(setting, own.coarse)}
         if kind == "edges":
             lengths["mounting"] = setting

@@ -10,6 +10,7 @@ from ngwear.error_estimates.run_to_error import ACROSS, LEVELS, at_level, first_
 from ngwear.errors import ResultError, SceneError
 from ngwear.loop.stepper import Stepper
 from ngwear.results.quantities_of_interest import DEPTH
+from ngwear.results.recorder import fingerprint
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.options import Wear
 from ngwear.verify.no_loss import scene
@@ -76,6 +77,29 @@ def test_levels_are_run_until_one_states_less(tmp_path, coarse_first):
     name = FILE if last == 2 * before else COARSEST
     told = json.loads((tmp_path / name).read_text())
     assert told["elements"] == json.loads((tmp_path / LEVELS / f"{before:g}" / "summary.json").read_text())["elements"]
+
+
+GOOD = {"elements across [-]": 2.0, "parts of a stroke [-]": 1}
+NOTES = {
+    "no JSON": "{",
+    "a list": "[1, 2]",
+    "no levels": {"levels": []},
+    "levels that are none": {"levels": [3]},
+    "a path for elements across": {"levels": [GOOD | {"elements across [-]": "../../elsewhere"}]},
+    "a path for parts": {"levels": [GOOD | {"parts of a stroke [-]": "/../../../elsewhere"}]},
+}
+
+
+@pytest.mark.parametrize("notes", NOTES)
+def test_crafted_notes_of_levels_are_refused_and_move_nothing(tmp_path, notes):
+    out, content = tmp_path / "out", NOTES[notes]
+    out.mkdir()
+    (out / "mine.txt").write_text("mine")
+    text = content if isinstance(content, str) else json.dumps({"scene": fingerprint(to(ASKED))} | content)
+    (out / "levels.json").write_text(text)
+    with pytest.raises(ResultError, match=r"levels\.json cannot be read .*; remove the folder and run again"):
+        run_to_error(to(ASKED), out=out, resume=True)
+    assert sorted(path.name for path in tmp_path.rglob("*")) == ["levels.json", "mine.txt", "out"]
 
 
 @pytest.mark.slow

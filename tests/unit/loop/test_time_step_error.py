@@ -73,6 +73,7 @@ def in_sixteenths(finished):
     for _ in range(4):
         finer = in_halves(finer)
     whole, exact = next_cycle(finished.state), next_cycle(finer)
+    Stepper(finished.state.stage.scene).restore_last_stroke(finished.state)
     deepest = time_step_error._deepest(whole)
     return [time_step_error._read(seen, deepest) for seen in (whole, exact)]
 
@@ -271,7 +272,7 @@ def test_a_run_to_an_error_takes_the_parts_that_it_needs(tmp_path, creeping, mon
         return {by_time(DEPTH): 0.03 / state.stage.scene.program.parts}
 
     monkeypatch.setattr(time_step_error, "time_step_errors", told)
-    monkeypatch.setattr(module, "first_across", lambda error: 3.0)
+    monkeypatch.setattr(module, "first_across", lambda error, peak_error=None: 3.0)
     monkeypatch.setattr(module, "next_across", lambda across, stated, error: None)
     asked = replace(creeping, accuracy=Accuracy(error=0.02))
     summary = run_to_error(asked, out=tmp_path).summary

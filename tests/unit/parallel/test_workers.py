@@ -51,10 +51,15 @@ def test_what_ngwear_refuses_has_failed_and_the_worker_goes_on(worker, tmp_path)
     assert worker.did()
 
 
-def test_a_worker_has_one_thread_and_leaves_this_process_its_own(worker, tmp_path):
-    worker.do(os.system, f"env > {tmp_path / 'env'}")
+def test_a_worker_has_one_thread_and_leaves_this_process_its_own(tmp_path, monkeypatch):
+    for name in ONE_THREAD:
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setenv(ONE_THREAD[0], "3")
     before = {name: os.environ.get(name) for name in ONE_THREAD}
+    worker = Worker("shutil")
+    worker.do(os.system, f"env > {tmp_path / 'env'}")
     assert worker.did()
+    worker.end()
     lines = (tmp_path / "env").read_text().splitlines()
     assert {f"{name}=1" for name in ONE_THREAD} <= set(lines)
     assert {name: os.environ.get(name) for name in ONE_THREAD} == before

@@ -1,4 +1,6 @@
 import math
+import pickle
+from dataclasses import replace
 
 import pytest
 from conftest import edited
@@ -202,3 +204,9 @@ def test_classes_check_themselves_without_a_file():
         Stroke(name="out", travel=-1.0)
     with pytest.raises(SceneError, match=r"program\.stroke.*at least one"):
         Program(cycle=(), strokes=1)
+
+
+def test_a_scene_that_another_process_was_handed_can_be_changed_there(sheet):
+    """An infinite default is another object there."""
+    program = replace(sheet.program, rest=float("inf"))
+    assert replace(pickle.loads(pickle.dumps(program)), strokes=2).rest == math.inf
