@@ -119,7 +119,7 @@ class Stepper:
     def _refine(self, state: State) -> None:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
         ahead = remaining_sliding(state)
-        while state.ledger.remeshes < 4:  # more bring little; the run meshes anew where it must
+        while state.ledger.remeshes < 4:  # more remeshes improve little here; the run remeshes where it must
             vectors, before = [phase.vector for phase in state.phases], state.stage.scene
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting mesh may also be too fine
             if state.across is not None:

@@ -22,7 +22,7 @@ RUN_COLUMNS = {
 }
 STROKE_ERRORS = {"peak pressure": PEAK, "contact width": "contact width [-]", "friction force": FRICTION}
 BY_TIME_STEP = "by the time step [-]"  # ending of a name: part of the error of a quantity
-# The last half was settled on the filled seal (``verify error_estimates``); so many that chance averages out.
+# The last half of the run was chosen on the filled seal (``verify error_estimates``); 17 strokes average out scatter.
 PLACES = 17  # number of strokes in the last half of the run at which histories are compared
 
 

@@ -31,8 +31,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-LOWEST, HIGHEST = 1.0, 1.5  # order of convergence: see above; the lower settled on ``verify error_estimates``
-FAR = 1 / 3  # relative difference beyond which the coarsest run is not used; settled on the rod seal's peak
+LOWEST, HIGHEST = 1.0, 1.5  # order of convergence, see above; the lower limit was chosen on ``verify error_estimates``
+FAR = 1 / 3  # relative difference beyond which the coarsest run is not used; chosen on the rod seal
 Quantities = Mapping[str, Mapping[str, ArrayLike]]
 
 

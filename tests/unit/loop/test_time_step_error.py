@@ -72,7 +72,7 @@ def in_sixteenths(finished):
     for _ in range(4):
         finer = in_halves(finer)
     whole, exact = next_cycle(finished.state), next_cycle(finer)
-    Stepper(finished.state.stage.scene).stand(finished.state)
+    Stepper(finished.state.stage.scene).restore_last_stroke(finished.state)
     deepest = time_step_error._deepest(whole)
     return [time_step_error._read(seen, deepest) for seen in (whole, exact)]
 
