@@ -93,20 +93,20 @@ def _unstable_surface(problem: Problem) -> str:
         if isinstance(term, Friction) and isinstance(term.contact, OutlineContact) and term.contact.peak() > 0:
             contact = term.contact
             slip = abs(term.slip.Get()) if isinstance(term, FullSliding) else 1.0
-            told = (
+            cause = (
                 f"friction of {slip * term.mean():.3g} under p/G = {contact.peak() / contact.modulus:.2g} at contact "
             )
-            told += f"'{contact.name}' "
+            cause += f"'{contact.name}' "
             least, place = contact.least_stretch()
             if least <= NEAR * CREASING:
                 at = ", ".join(f"{x:.4g}" for x in place)
                 found.append(
-                    f"{told}compresses the surface at ({at}) to {least:.2g} of its length; it creases from {CREASING} "
+                    f"{cause}compresses the surface at ({at}) to {least:.2g} of its length; it creases from {CREASING} "
                     f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: {REMEDIES}"
                 )
             elif isinstance(term, FullSliding) and term.margin() < 0:
                 found.append(
-                    f"{told}is more than steady sliding bears: waves grow along the surface as they run (margin "
+                    f"{cause}is more than steady sliding bears: waves grow along the surface as they run (margin "
                     f"{term.margin():.2g}): {REMEDIES}"
                 )
     return "; ".join(found)

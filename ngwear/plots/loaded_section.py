@@ -134,8 +134,8 @@ class _Picture:
             self._name_pressures(figure, layout, panels)
         pressure = self.section.fluid_pressure
         stroke = self.shown.kind if len({s.kind for s in self.kept.snapshots}) > 1 else ""
-        told = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
-        title = f"{self.kept.scene}: {', '.join(filter(None, told))}"
+        words = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
+        title = f"{self.kept.scene}: {', '.join(filter(None, words))}"
         figure.text(left / layout.size[0], 1 - 0.12 / layout.size[1], title, va="top", fontsize=FONT + 2)
         return figure
 

@@ -86,12 +86,12 @@ def slide_in_time(asperity: Asperity, speed: float, *, fineness: float = 12, wak
     window = max(4 * finest, min(half, relaxation))
     track = wakes * asperity.wake(speed) + half / 4 + window
     if finest < half / fineness:
-        told = [np.array([e - window - 0.15 * half, e + 0.15 * half]) + track for e in (-half, half)]
+        fine = [np.array([e - window - 0.15 * half, e + 0.15 * half]) + track for e in (-half, half)]
     else:
-        told = [np.array([track - window - 1.5 * half, track + 1.5 * half])]
+        fine = [np.array([track - window - 1.5 * half, track + 1.5 * half])]
 
     def element(x: float) -> float:
-        away = min(max(low - x, x - high, 0.0) for low, high in told)
+        away = min(max(low - x, x - high, 0.0) for low, high in fine)
         behind = max(track - window - 2 * half - x, 0.0)
         return min(finest + GROWTH * away, half / fineness + GROWTH * behind, half / COARSEST)
 
