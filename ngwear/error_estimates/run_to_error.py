@@ -226,9 +226,9 @@ def _earlier_levels(folder: OutFolder, scene: Scene, *, resume: bool) -> list[di
         notes = json.loads(file.read_text(encoding="utf-8"))
         of, levels = notes["scene"], list(notes["levels"])
         for level in levels:
-            _level_folder(folder, level)  # made of numbers alone: no text of the file becomes a path
+            _level_folder(folder, level)  # fails unless made of numbers: no text of the file becomes a path
         if not levels:
-            raise ValueError("it tells of no level")
+            raise ValueError("it lists no level")
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise ResultError(f"{file} cannot be read ({error}); remove the folder and run again") from error
     if of != fingerprint(scene):

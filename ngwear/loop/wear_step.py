@@ -83,9 +83,9 @@ class WearStep:
             wear_step._predict_outline(depth, later or {})
         implicit = scene.wear.scheme == "implicit"
         depth = wear_step.last_depth - wear_step.predicted_depth + wear_step.later_depth
-        for spec, own, known in zip(scene.contacts, wear_step.end_weight, depth, strict=True):
+        for spec, weight, known in zip(scene.contacts, wear_step.end_weight, depth, strict=True):
             contact = state.stage.contacts[spec.name]
-            contact.compliance.Set(own * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
+            contact.compliance.Set(weight * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
             if spec.wears:
                 contact.set_worn(known)
         return wear_step
@@ -118,11 +118,11 @@ class WearStep:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
 
     def _predict_outline(self, depth: Array, later: dict[int, Strokes]) -> None:
-        scene, coming = self.state.stage.scene, np.zeros(len(self.outline))
+        scene, later_depth = self.state.stage.scene, np.zeros(len(self.outline))
         for kind, sliding in later.items():
             if self.state.phases[kind].error <= CALM:
-                coming = coming + self._depth_at_mean_pressure(kind, sliding).sum(axis=0)
-        whole = depth.sum(axis=0) + coming
+                later_depth = later_depth + self._depth_at_mean_pressure(kind, sliding).sum(axis=0)
+        whole = depth.sum(axis=0) + later_depth
         try:
             predicted = recede(self.outline, whole * self.outline.widths(scene.worn_edges), scene.worn_edges)
             if len(predicted) != len(self.outline):
@@ -130,7 +130,7 @@ class WearStep:
             self.state.stage.body.move_to(predicted)
         except (GeometryError, MeshError) as error:
             log.info("%s: the step is done without a predicted outline", error)
-            self.later_depth = coming
+            self.later_depth = later_depth
             return
         moved = np.linalg.norm(predicted.points - self.outline.points, axis=1)
         self.predicted_depth = depth * np.divide(moved, whole, out=np.zeros_like(whole), where=whole > 0)
