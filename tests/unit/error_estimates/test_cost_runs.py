@@ -25,6 +25,7 @@ from ngwear.errors import ConvergenceError, SceneError
 from ngwear.loop import stepper
 from ngwear.parallel.sweep import sweep
 from ngwear.parallel.workers import one_thread_pool
+from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.read_scene import read_scene
 from ngwear.verify.rod_seal import shipped_scene
 
@@ -52,6 +53,12 @@ reach = 2.5
 beside = 2.0
 """
 AMPLE = 300.0  # seconds, some ten times what the few levels take
+
+
+@pytest.fixture
+def seal(seal):
+    """The shipped seal with the default element edges; its own accuracy.error is not a parameter of a study."""
+    return replace(seal, accuracy=Accuracy())
 
 
 def names(scene):
