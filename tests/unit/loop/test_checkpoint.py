@@ -177,7 +177,7 @@ def test_a_folder_of_the_first_version_says_so_and_what_to_do(begun, sheet_file,
     assert main(["run", str(sheet_file), "--out", str(begun), "--quiet", *resume]) == BAD_INPUT
     told = capsys.readouterr().err
     assert "holds a run of ngwear 0.1 (checkpoint.pkl)" in told
-    assert "run the scene anew in another folder" in told
+    assert "run the scene again in another folder" in told
     assert not os.path.exists("exploded")
 
 
