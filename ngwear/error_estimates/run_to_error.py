@@ -239,7 +239,7 @@ def _earlier_levels(folder: OutFolder, scene: Scene, *, resume: bool) -> list[di
 
 def _level_folder(folder: OutFolder, level: Mapping[str, Any]) -> Path:
     """Folder of a level's files."""
-    parts = "" if level[PARTS] == 1 else f" in {level[PARTS]} parts"
+    parts = "" if level[PARTS] == 1 else f" in {level[PARTS]:d} parts"
     return folder.path / LEVELS / f"{level[ACROSS]:g}{parts}"
 
 
