@@ -15,7 +15,7 @@ from ngwear.sliding.pin import PinStage, slide_pin
 
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1500.0)
 PIN = Pin(material=RUBBER, series=PronySeries((1.0,), (1e-3,)), load=20.0, track_radius=math.inf)
-COARSE = PinMesh(patch=1.0, column=0.5, reach=3.0, beside=2.5)
+COARSE = PinMesh(patch=0.8, column=0.4, reach=3.0, beside=2.5)
 
 
 def pressed(scale=1.0):
