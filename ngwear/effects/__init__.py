@@ -1,1 +1,1 @@
-"""Physical effects, one a file: what a scene does not list adds nothing to its equations."""
+"""Physical effects, one in each file; an effect that a scene does not list adds nothing to its equations."""

@@ -1,4 +1,4 @@
-"""What every term of the equilibrium offers."""
+"""Base classes of the terms of the equilibrium, one for each physical effect."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ VOLUMETRIC_STRESS = "volumetric stress"
 
 @dataclass(frozen=True)
 class Unknowns:
-    """Trial and test functions and state by name, and the body, kinematics and material points they live on."""
+    """Trial functions, test functions and state by name, with the body, kinematics and material points."""
 
     body: Meshed
     kinematics: Kinematics
@@ -48,20 +48,20 @@ class Unknowns:
 
     @property
     def points(self) -> MaterialPoints:
-        """The material points; SceneError where no term has any."""
+        """The material points; SceneError if no term has any."""
         if self.inside is None:
-            raise SceneError("terms", list(self.trial), "none is of the part's inside: there are no material points")
+            raise SceneError("terms", list(self.trial), "no term acts inside the part: there are no material points")
         return self.inside
 
     @property
     def section(self) -> MeshedSection:
-        """The body of a term along an outline; SceneError where it has none."""
+        """The body as a section with an outline; SceneError if it is a solid."""
         if not isinstance(self.body, MeshedSection):
-            raise SceneError("part", type(self.body).__name__, "is no section, and has no outline")
+            raise SceneError("part", type(self.body).__name__, "is not a section and has no outline")
         return self.body
 
     def seat(self, background: Background) -> Seat:
-        """The body on a background that keeps its memory."""
+        """The body on a background that stores the viscoelastic history."""
         from ngwear.fields.background_mesh import Seat
 
         displacement = self.state[DISPLACEMENT]
@@ -73,13 +73,13 @@ class Unknowns:
 class Term(abc.ABC):
     """One effect's share of the equilibrium.
 
-    Residuals and tangents are pure functions of the unknowns and of parameters that change between
-    solves only. ``loads`` maps names such as ``"rod approach [mm]"`` to those parameters that a program
-    of loads may set, ``tractions`` names the unknowns that a solve must have settled.
+    Residuals and tangents are functions of the unknowns and of parameters that change between solves only. ``loads``
+    maps names such as ``"rod approach [mm]"`` to those parameters that a program of loads may set, ``tractions`` names
+    the unknowns that must have converged at the end of a solve.
     """
 
     symmetric: bool = True
-    remembers: bool = False  # whether every step of a walk must be as exact as its last
+    remembers: bool = False  # whether every load step must be as exact as the last one
     tractions: tuple[str, ...] = ()
 
     def __init__(self) -> None:
@@ -93,25 +93,25 @@ class Term(abc.ABC):
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         """Add energies (``Variation``) or forms on the outline to the equilibrium."""
 
-    def gather(self) -> None:  # noqa: B027 - most terms need but what is near
-        """Before each residual, take from the present state what the form, which sees one element, cannot."""
+    def gather(self) -> None:  # noqa: B027 - most terms need only local values
+        """Before each residual, compute from the present state what is not local to one element."""
 
-    def prepare(self) -> None:  # noqa: B027 - most terms have nothing to freeze
-        """Freeze, from the state that a solve starts from, what stays fixed in that solve."""
+    def prepare(self) -> None:  # noqa: B027 - most terms fix nothing
+        """Before a solve, compute from its start state the quantities that stay fixed in it."""
 
     def refresh(self) -> bool:
-        """After a solve, update what was fixed in it; True asks for another solve."""
+        """After a solve, update the quantities that were fixed in it; True if another solve is necessary."""
         return False
 
     def commit(self, strain: Array) -> None:  # noqa: B027 - most terms have no memory
-        """Move the memory to the end of a step that is accepted; ``strain`` is that of the material points, if any."""
+        """Update the history at the end of an accepted step; ``strain`` is that of the material points, if any."""
 
-    def set_time_step(self, step: float) -> None:  # noqa: B027 - most terms know no time
-        """Length of the step that is solved next [s]; infinity for an equilibrium that is left for ever."""
+    def set_time_step(self, step: float) -> None:  # noqa: B027 - most terms do not depend on time
+        """Length of the next time step [s]; infinity for the long-term equilibrium."""
 
 
 class VolumeTerm(Term):
-    """A term of the section's inside: a stress at each material point."""
+    """A term inside the part: a stress at each material point."""
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         """Nothing on the outline."""

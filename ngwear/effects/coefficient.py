@@ -1,4 +1,4 @@
-"""A law of friction inside a form."""
+"""A law of friction, evaluated in a finite element form."""
 
 from __future__ import annotations
 
@@ -11,18 +11,18 @@ from ngwear.laws import Constant, FrictionLaw
 
 
 class Coefficient:
-    """Coefficient of friction that a term builds its form with: ``coefficient(pressure)``.
+    """Coefficient of friction in the form of a term: ``coefficient(pressure)``.
 
-    What the law makes of distance and speed are parameters of the form, which ``set_state`` changes between solves. A
-    law that is a number stays one.
+    The numbers that the law computes from distance and speed are parameters of the form; ``set_state`` changes them
+    between solves. A constant law stays a number.
 
     Parameters
     ----------
     contact : str
-        Its name, for complaints.
+        Name of the contact, for error messages.
     law : FrictionLaw or float
     speed : float or None
-        Of the sliding at first [mm/s], at the distance 0.
+        First sliding speed [mm/s], at the distance 0.
 
     Raises
     ------
@@ -37,7 +37,7 @@ class Coefficient:
         self._held = [ng.Parameter(number) for number in self.law.held(0.0, speed)]
 
     def set_state(self, distance: float, speed: float | None = None) -> None:
-        """Go to a sliding distance [mm] and a speed [mm/s]; None if the law needs no speed."""
+        """Set the sliding distance [mm] and the speed [mm/s]; None if the law needs no speed."""
         for parameter, number in zip(self._held, self.law.held(distance, speed), strict=True):
             parameter.Set(number)
 

@@ -28,22 +28,22 @@ class OutlineContact(UnilateralContact):
     A surface that slides (``slides=True``) also moves across its approach, turned by +90 degrees, by the load
     ``"NAME slide [mm]"``; all else as in ``UnilateralContact``.
 
-    With displacements of order 1 (``order``) it is continuous: discontinuous, it would have two unknowns a mesh edge
-    where the outline has but one displacement a node. The law then holds at the nodes, each for itself: weighed along
-    the edges, it leaves open nodes pressures of either sign that die out but never vanish. With order 3 it is linear as
-    with order 2: at the contact's edge it falls as a square root, and no higher polynomial comes nearer to that.
+    With displacements of order 1 (``order``) it is continuous: a discontinuous one would have two unknowns per mesh
+    edge, but the outline has only one displacement per node. The contact law then holds at each node; integrated along
+    the edges it would leave small pressures of both signs at open nodes. With order 3 it is linear as with order 2: at
+    the contact's end the pressure falls as a square root, which a higher polynomial does not approximate better.
 
-    With ``wears`` a depth ``worn`` may be set that is lost in the same step whatever the pressure.
+    With ``wears`` a depth ``worn`` can be set, which is worn in the same step independent of the pressure.
 
-    A surface that is worn itself (``counter``, also an attribute that may be replaced between solves) stands back by
-    the depth of its profile, which has moved along the surface's tangent by ``turned`` [mm]. Each solve takes that
-    depth where the state that it starts from touches, and the normal of the unworn surface: the profile must be shallow
-    and change little along the tangential displacement of a solve.
+    A surface that is worn itself (``counter``, an attribute that may be replaced between solves) lies back by the depth
+    of its profile, which has moved along the surface's tangent by ``turned`` [mm]. A solve takes the depth at the
+    contact points of its start state, and the normal of the unworn surface. So the profile must be shallow and change
+    little along the tangential displacement of a solve.
 
     Attributes
     ----------
     section : MeshedSection
-        That it is on, once it has been added to a form.
+        Section of the contact, set when the term is added to a form.
     """
 
     section: MeshedSection
@@ -93,7 +93,7 @@ class OutlineContact(UnilateralContact):
         if self.wears:
             self.worn = ng.GridFunction(unknowns.state[self.pressure_name].space)
         super().add_to(form, unknowns)
-        self._lay_samples(self.section, self._region)
+        self._place_samples(self.section, self._region)
 
     def lengths(self, unknowns: Unknowns) -> ng.GridFunction:
         body = unknowns.section
@@ -105,7 +105,7 @@ class OutlineContact(UnilateralContact):
         field.vec.FV().NumPy()[dofs] = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         return field
 
-    def _lay_samples(self, body: MeshedSection, region: ng.Region) -> None:
+    def _place_samples(self, body: MeshedSection, region: ng.Region) -> None:
         """Mapped points at both ends and in the middle of each mesh edge in contact, in the order of the outline."""
         line = body.outline
         self.positions = line.on(self.edges)
@@ -147,9 +147,9 @@ class OutlineContact(UnilateralContact):
         return nominal
 
     def _lengths(self) -> Array:
-        """Lengths of the mesh edges where they are now [mm], as forces on them are integrated.
+        """Present lengths of the mesh edges [mm], as used to integrate forces.
 
-        By the outline's spline, loads would differ from that by 1e-6 of all where a worn arc ends in a kink.
+        Lengths by the outline's spline would give loads that differ by 1e-6 where a worn arc ends in a kink.
         """
         if self._measured is None or self._measured[0] is not self.section.contour:
             whole = ng.Integrate(
@@ -219,7 +219,7 @@ class OutlineContact(UnilateralContact):
         return dofs, np.array(shapes)
 
     def set_worn(self, depth: Array) -> None:
-        """Let a depth, given at the outline's points [mm], be worn in the next solve whatever P, where any is kept."""
+        """Set the depth at the outline's points [mm] that the next solve wears independent of P, if ``worn`` exists."""
         if self.worn is not None:
             self._interpolate(self.worn, self._along_outline(depth))
 
@@ -235,7 +235,7 @@ class OutlineContact(UnilateralContact):
         return self._sample(field)[:, 0]
 
     def set_edge_values(self, field: ng.GridFunction, values: Array) -> None:
-        """The other way round: give such a field its values."""
+        """Inverse of ``edge_values``: set the values of such a field."""
         elements = self.section.outline.element[self.positions]
         dofs = [field.space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in elements]
         field.vec.FV().NumPy()[dofs] = values
@@ -254,8 +254,8 @@ class OutlineContact(UnilateralContact):
     def edges_to_nodes(self, values: Array) -> Array:
         """Slip of the mesh edges at the nodes of ``profile``: harmonic means of the edges that meet there.
 
-        A node of an edge that sticks does not slip. Were it worn, the edge would lose its pressure and slip next, and
-        the stick zone vanish edge by edge.
+        A node of an edge that sticks does not slip. If it were worn, the edge would lose its pressure and slip next,
+        and the stick zone would vanish edge by edge.
         """
         resistance = 1 / np.maximum(np.column_stack([values, values]), 1e-300)
         return 1 / self.nodes.average(resistance)
@@ -278,7 +278,7 @@ class OutlineContact(UnilateralContact):
             self._follow()
 
     def _follow(self) -> None:
-        """Move a surface under force that has lost touch (the part has worn) after the points that carried it."""
+        """Move a surface under force that has lost contact (the part has worn) to the points that carried its load."""
         gap, pressure = self._sample(self.gap(self._state)), self.end_pressures()
         carried = np.maximum(pressure, 0.0)
         still = np.maximum(pressure - self._sample(self._augmentation) * gap, 0.0)

@@ -21,7 +21,7 @@ FEWEST = 12  # of the faces near the peak, for its six coefficients: twice as ma
 
 @dataclass(frozen=True)
 class Faces:
-    """What a contact looks like on the mesh's faces.
+    """Contact pressure on the faces of the mesh.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class Faces:
 
     @property
     def loaded(self) -> NDArray[np.bool_]:
-        """Whether each bears more than a thousandth of the highest pressure, shape (n,)."""
+        """Whether the pressure is above a thousandth of the highest one, shape (n,)."""
         return self.pressure > LOADED * self.pressure.max(initial=0.0)
 
     @property
@@ -57,13 +57,12 @@ class Faces:
 
     @property
     def peak(self) -> float:
-        """Highest Cauchy pressure [MPa], without the scatter of single faces.
+        """Highest Cauchy pressure [MPa], smoothed over the faces near the peak.
 
-        It is the top of the paraboloid nearest to the squares of the pressures above 0.8 of the highest. Pressures of
-        single faces scatter by a per cent and more with how the mesh lies, and the highest of all is the one that
-        scatters most, upwards; the more faces, the higher. Of Hertz's pressure the square is a paraboloid. Faces count
-        by their areas. Where fewer than twelve bear so much, or the paraboloid has no top among them, it is the highest
-        face's pressure.
+        It is the maximum of a paraboloid, fitted to the squares of the pressures above 0.8 of the highest one, weighted
+        by area (the square of Hertz's pressure is a paraboloid). Pressures of single faces scatter by one per cent and
+        more with the mesh, and their maximum is biased upwards. With fewer than twelve such faces, or without a maximum
+        among them, it is the highest pressure of a face.
         """
         highest = float(self.pressure.max(initial=0.0))
         on = self.pressure > NEAR_PEAK * highest
@@ -88,9 +87,9 @@ class Faces:
 class PatchContact(UnilateralContact):
     """Contact on named faces of a solid; the nominal pressure is constant on each mesh face.
 
-    With displacements of order 2 a linear pressure, whether continuous or not, does worse: continuous it rings over
-    several elements beyond the contact's edge, discontinuous it has three unknowns a triangle where the displacement
-    has two, and does not converge.
+    With displacements of order 2 a linear pressure is worse: a continuous one oscillates over several elements beyond
+    the contact's edge; a discontinuous one has three unknowns per triangle, the displacement only two, and does not
+    converge.
     """
 
     def pressure_space(self, body: Meshed) -> ng.FESpace:
@@ -138,7 +137,7 @@ class PatchContact(UnilateralContact):
         return places + np.asarray(self._state[DISPLACEMENT](self._body.mesh(*places.T, ng.BND)))
 
     def take_pressure(self, other: PatchContact) -> None:
-        """Start from the nominal pressure that another contact with the same faces, differently meshed, has."""
+        """Take over the nominal pressure of another contact on the same faces with another mesh, as a start value."""
         centres = [self._sample(c)[:, 3] for c in COORDINATES]
         old = other._state[other.pressure_name]
         there = other._body.mesh(*centres, ng.BND)

@@ -1,4 +1,4 @@
-"""What a contact looks like along the outline: nodal pressures, gaps and zones."""
+"""Contact along the outline: nodal pressures, gaps and contact zones."""
 
 from __future__ import annotations
 
@@ -77,9 +77,9 @@ class EdgeNodes:
 class ContactProfile:
     """Nodal values along a contact's edges, in the order of the outline.
 
-    The unknown pressure jumps between mesh edges; the nodal one is its lumped L2 projection, which damps the
-    jumps, corrected so that a linear pressure is exact on a graded mesh too. The load is nearer to the unknown: what
-    lumping takes off a curved pressure is given back to it.
+    The unknown pressure jumps between mesh edges. The nodal pressure is its lumped L2 projection, which damps the
+    jumps, with a correction that makes a linear pressure exact on a graded mesh too. ``load`` is closer to the unknown:
+    it is corrected for the error of lumping with a curved pressure.
 
     Attributes
     ----------
@@ -96,7 +96,7 @@ class ContactProfile:
     weight : array, shape (k,)
         Reference length that belongs to each node, int phi_i ds [mm].
     load : array, shape (k,)
-        The node's share of int P ds [N/mm], see ``_gathered``: what wears.
+        The node's share of int P ds [N/mm], see ``_gathered``; the wear is computed from it.
     edges : array of int, shape (m, 2)
         The two nodes of each mesh edge.
     mean : array, shape (m,)
@@ -154,13 +154,13 @@ class ContactProfile:
         return float(load @ length / load.sum()) if load.any() else 0.0
 
     def straight(self) -> ContactProfile:
-        """The same with loads by the lumped pressures, the sum as it is, and pressures straight between nodes."""
+        """The same profile with loads from the lumped pressures (same sum), and pressures linear between nodes."""
         load = self.nominal_pressure * self.weight
         load = load * (self.load.sum() / load.sum()) if load.any() else load
         return replace(self, load=load, mean=(load / self.weight)[self.edges].mean(axis=1))
 
     def between_nodes(self, values: Array) -> Array:
-        """Values at the outline's points, shape (n,), as they are at the contact's nodes, and straight between them."""
+        """Values at the outline's points, shape (n,), linear between the values at the contact's nodes."""
         n = len(values)
         at_nodes = np.interp(self.t, np.arange(n), values, period=n)
         return np.where(values == 0.0, 0.0, np.interp(np.arange(n), self.t, at_nodes, period=n))
@@ -211,7 +211,7 @@ def nodal_pressure(
 ) -> tuple[Array, Array, Array]:
     """Nominal pressure, load and weight of each node (see ``ContactProfile``) from the pressures at the edges' ends.
 
-    A pressure that is ``nodal`` already stays as it is; smeared, the contact would be an edge wider.
+    A pressure that is already ``nodal`` is not projected: that would widen the contact by one edge.
     """
     first, second = pressure.T
     share = np.stack([2 * first + second, first + 2 * second], axis=1) * lengths[:, None] / 6
@@ -229,12 +229,12 @@ def nodal_pressure(
 
 
 def _gathered(nodes: EdgeNodes, lengths: Array, lumped: Array, load: Array) -> Array:
-    """What the nodes' loads gain when lumping is undone: from lower pressures to higher ones, edge by edge [N/mm].
+    """Correction of the nodes' loads for the error of lumping: load moves from lower to higher pressures [N/mm].
 
     The lumped projection of a pressure of curvature p'' is off by ``h^2 p''/12``: in the middle of a contact of four
-    edges' width 4 % are missing, and so much it would wear too little. A flow of ``h (p_i - p_j) / 12`` over each edge
-    makes up for it, to ``O(h^4)``, and still damps waves of two edges. No node gives more than it has: such flows are
-    the antidiffusive ones of Boris & Book (J. Comput. Phys. 11 (1973) 38).
+    edges' width 4 % of the pressure, and so of the wear, are missing. A load of ``h (p_i - p_j) / 12`` moved over each
+    edge corrects this to ``O(h^4)`` and still damps waves of two edges. No node gives away more than its load:
+    antidiffusive fluxes of Boris & Book (J. Comput. Phys. 11 (1973) 38).
     """
     first, second = nodes.of_edges.T
     flow = lengths * (lumped[first] - lumped[second]) / 12
@@ -245,7 +245,7 @@ def _gathered(nodes: EdgeNodes, lengths: Array, lumped: Array, load: Array) -> A
 
 
 def _grading_bias(nodes: EdgeNodes, lengths: Array, apart: Array, mean: Array) -> Array:
-    """What lumping adds to a pressure of slope s between edges of lengths a and b, ``s (b - a) / 3``."""
+    """Error of lumping for a pressure of slope s between edges of lengths a and b, ``s (b - a) / 3``."""
     after, before = nodes.of_edges.T  # the node that ends an edge has it before itself
     n = len(nodes.t)
 

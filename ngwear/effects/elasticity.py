@@ -1,4 +1,4 @@
-"""Nearly incompressible hyperelasticity with the pressure as an unknown of its own."""
+"""Nearly incompressible hyperelasticity with the volumetric stress as a separate unknown."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ class Elasticity(VolumeTerm):
     locking appears for any K/G (perturbed Lagrangian of Simo, Taylor & Pister, Comput. Methods Appl. Mech. Eng. 51
     (1985) 177; ``verify locking``).
 
-    Ks is there for stability: without it such pairs, volume kept in the mean only, have spurious
-    wrinkles of the mesh's wavelength once the pressure exceeds a few G (Auricchio et al., Comput. Methods
-    Appl. Mech. Eng. 194 (2005) 1075): under a lip at p = 3.5 G one load had several discrete solutions, which
-    differed by 3 µm and 15 % of the peak pressure. The sum of both parts is the exact energy K/2 (J - 1)^2.
+    Ks is necessary for stability: without it such pairs, which conserve the volume in the mean only, have spurious
+    wrinkles of the mesh's wavelength once the pressure exceeds a few G (Auricchio et al., Comput. Methods Appl. Mech.
+    Eng. 194 (2005) 1075): under a lip at p = 3.5 G one load had several discrete solutions, which differed by 3 µm and
+    15 % of the peak pressure. The sum of both parts is the exact energy K/2 (J - 1)^2.
 
-    Under tractions along the surface of about G a large Ks harms: at 10 G the pressure of ``verify sliding_roller`` has
-    wrinkles of the mesh's wavelength from mu = 0.9 on, on elements of 0.025 mm, and none at 3 G.
+    Under tractions of about G along the surface a large Ks is harmful: at 10 G the pressure of ``verify
+    sliding_roller`` has wrinkles of the mesh's wavelength from mu = 0.9 on, on elements of 0.025 mm, and none at 3 G.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Elasticity(VolumeTerm):
 
     @property
     def split(self) -> tuple[float, float]:
-        """The bulk modulus in two [MPa]: the part taken pointwise, and the part carried by the unknown."""
+        """Two parts of the bulk modulus [MPa]: the pointwise part Ks and the part K - Ks of the unknown."""
         bulk = self.material.bulk_modulus
         pointwise = min(POINTWISE * self.material.shear_modulus, bulk / 2)
         return pointwise, bulk - pointwise

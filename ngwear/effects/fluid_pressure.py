@@ -21,12 +21,12 @@ class FluidPressure(Term):
     """Follower traction ``-chi p n`` on the wetted part of named edges.
 
     chi is 1 from the inlet edges, in both directions along the outline, up to the first mesh edge in contact, and 0
-    beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``). To count such an
-    edge as dry moves the front by half an edge on the average, and where coarse edges end a static contact the load by
-    per cents.
+    beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``). Treating such an
+    edge as dry would move the front by half an edge on average; with coarse edges the load would change by some per
+    cent.
 
-    chi is fixed in a solve and found anew after it, until it moves no load of more than ``STAYS``. If the fluid meets
-    no contact before the named edges end, ``leaks`` is True: the seal does not hold.
+    chi is fixed in a solve and updated after it, until the change of load is below ``STAYS``. If the fluid reaches the
+    end of the named edges without a contact, ``leaks`` is True: the seal leaks.
 
     Parameters
     ----------
@@ -65,10 +65,10 @@ class FluidPressure(Term):
         area = unknowns.kinematics.area_vector(u, ng.Grad(u).Trace())
         work = self.pressure * self.wetted * unknowns.kinematics.weight * (area * v)
         form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
-        self._lay_path(body)
+        self._order_path(body)
         self.refresh()
 
-    def _lay_path(self, body: MeshedSection) -> None:
+    def _order_path(self, body: MeshedSection) -> None:
         """Order the mesh edges that the fluid may reach outwards from the inlet's last one, once in each direction."""
         line = body.outline
         reach = np.isin(line.names, self.edges)
@@ -83,9 +83,9 @@ class FluidPressure(Term):
             self._paths.append((step, np.array(path)))
 
     def refresh(self) -> bool:
-        """Find the front anew; True if it has moved by more than what may be left.
+        """Update the front; True if the change of load is above ``STAYS``.
 
-        After a solve it otherwise stays where it was, and the state an equilibrium.
+        Otherwise the front stays where it was, so that the state remains an equilibrium.
         """
         touching, outside, carried = self._contact()
         share = np.where(self._inlet, 1.0, 0.0)
@@ -109,7 +109,7 @@ class FluidPressure(Term):
         self._solved = True
 
     def _contact(self) -> tuple[np.ndarray, np.ndarray, float]:
-        """Which edges of the outline carry contact pressure, what share of each is free of it, and all that they carry.
+        """Mesh edges with contact pressure, the share of each edge's length without it, and the total contact load.
 
         Of shapes (m,) and (m, 2): the contact ending towards the edge's first node, and towards its second; [N/mm].
         """
@@ -124,23 +124,23 @@ class FluidPressure(Term):
         return touching, outside, carried
 
     def fronts(self) -> np.ndarray:
-        """Outline parameters at which the fluid meets a contact in the present state; none on a way without one."""
+        """Outline parameters at which the fluid meets a contact in the present state; none on a path without one."""
         touching, _, _ = self._contact()
         first = [(step, path[touching[path]][:1]) for step, path in self._paths]
         return np.concatenate([self._body.outline.t[edge, 0 if step == 1 else 1] for step, edge in first])
 
     @property
     def shares(self) -> np.ndarray:
-        """What chi is on each mesh edge, in the order of the outline, shape (m,) [-]."""
+        """Value of chi on each mesh edge, in the order of the outline, shape (m,) [-]."""
         return self.wetted.vec.FV().NumPy()[self._unknown]
 
     def leak_pressure(self) -> tuple[float, str]:
-        """Fluid pressure that the contacts hold as they are [MPa], and the name of the edge that would give way first.
+        """Fluid pressure that the present contacts can seal [MPa], and the name of the edge at which it leaks first.
 
-        A seal leaks once the fluid's pressure surpasses that of the contact, everywhere along a way past it (Liu, Wang,
-        Chen & Suo, *Elastic leak of a seal*, Extreme Mech. Lett. 1 (2014) 54). Of the two ways from the inlet, the one
-        whose highest contact pressure is the lower leaks first. The contacts are those of the present state: fluid that
-        presses the part on, as it does an O-ring, makes them hold more.
+        A seal leaks when the fluid's pressure exceeds the contact pressure everywhere along a path (Liu, Wang,
+        Chen & Suo, *Elastic leak of a seal*, Extreme Mech. Lett. 1 (2014) 54). Of the two paths from the inlet, the one
+        with the lower maximum of contact pressure leaks first. The contact pressures are those of the present state; a
+        fluid that presses the part against its contacts, as with an O-ring, increases them.
         """
         highest = np.zeros(len(self._inlet))
         for contact in self.contacts:
@@ -161,7 +161,8 @@ class FluidPressure(Term):
 
 
 def free_of_contact(pressure: np.ndarray) -> np.ndarray:
-    """What share of each mesh edge is free of contact, if that ends within it; of the edges' pressures, shape (m, 2).
+    """Share of each mesh edge outside the contact, if the contact ends within it, from the edge pressures, shape (m,
+    2).
 
     The result is of the same shape: of contacts that end towards the first node, and towards the second. A pressure
     begins as the square root of the distance from the contact's end, so that over the way L in contact its centre lies

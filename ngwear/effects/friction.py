@@ -1,4 +1,4 @@
-"""Friction along a contact, and its cheap form for strokes much longer than the elastic slip: full sliding."""
+"""Friction along a contact, and its simple form for strokes much longer than the elastic slip: full sliding."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from ngwear.laws import Constant, FrictionLaw
 class Friction(Term):
     """Coulomb friction of a contact under a law.
 
-    A surface under force carries the friction too: the force balances pressure and friction together.
+    For a surface under force, the force is in equilibrium with pressure and friction together.
 
     Parameters
     ----------
     contact : UnilateralContact
     law : FrictionLaw or float
-        mu [-], >= 0. A law by pressure takes the Cauchy pressure P / (da/dA) of the state that is sought.
+        mu [-], >= 0. A law by pressure uses the Cauchy pressure P / (da/dA) of the unknown state.
     speed : float or None
-        Of the sliding at first [mm/s].
+        First sliding speed [mm/s].
 
     Attributes
     ----------
     coefficient : Coefficient
-        Its ``set_state`` goes to the distance and the speed of the next solve.
+        Its ``set_state`` sets the distance and the speed of the next solve.
 
     Raises
     ------
@@ -58,7 +58,7 @@ class Friction(Term):
 
     @property
     def varies(self) -> bool:
-        """Whether the law is more than a number."""
+        """Whether the law is not a constant."""
         return not isinstance(self.coefficient.law, Constant)
 
     def mu(self) -> Any:
@@ -68,7 +68,7 @@ class Friction(Term):
         return self.coefficient(state[self.contact.pressure_name] / kinematics.area_stretch(u, ng.Grad(u)))
 
     def mean(self) -> float:
-        """Highest possible friction over load, ``int mu P dA / int P dA`` [-]; 0 out of contact."""
+        """Friction limit over load, ``int mu P dA / int P dA`` [-]; 0 without contact."""
         pressure = self._unknowns.state[self.contact.pressure_name]
         load = self._integral(pressure)
         return self._integral(self.mu() * pressure) / load if load > 0 else 0.0
@@ -85,9 +85,9 @@ class FullSliding(Friction):
 
     The load ``"NAME slip"`` in [-1, 1] is the direction in which the surface moves along its tangent (the
     surface's normal turned clockwise); values between ramp a reversal. Neglects the stick phase after a
-    reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric. On an outline, what
-    ripples of the pressure rub acts a little downstream (see ``Ripples``); not on one with steps (``stepped``), over
-    which the pressure has no smooth part. Other parameters and errors as of ``Friction``.
+    reversal, whose length is the rubber's tangential deflection. The tangent matrix is unsymmetric. On an outline, the
+    friction of pressure ripples is shifted a little downstream (see ``Ripples``), but not on an outline with steps
+    (``stepped``), where the pressure has no smooth part. Other parameters and errors as of ``Friction``.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""What all terms with memory share: a stress whose history is one known tensor at each material point."""
+"""Base class of viscoelastic terms: the history is one known tensor at each material point."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Memory(VolumeTerm):
         self.share = 0.0
 
     def lay(self, unknowns: Unknowns) -> None:
-        """Start without a history."""
+        """Place the history at the material points, with the value 0."""
         self.history = np.zeros((*unknowns.points.volumes.shape, 4 if unknowns.body.mesh.dim == 2 else 6))
 
     def response(self, strain: Array, *, tangent: bool) -> tuple[Array, Array | None]:

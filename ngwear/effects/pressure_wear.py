@@ -1,4 +1,4 @@
-"""A law of wear that is not linear in the pressure, inside a contact."""
+"""A law of wear that is not linear in the pressure, in the equations of a contact."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ FADES = 0.25  # from one tangent of a solve to the next: 1e-6 after ten; checked
 
 
 class PressureWear:
-    """The closure ``K r(p)`` of a gap by wear, r = p phi(p), by its tangent at the state that is tried.
+    """Wear depth ``K r(p)`` in the gap, r = p phi(p), linearised at the present state.
 
         r(p) = r(p_0) + slope (p - p_0),    slope = max(r'(p_0), b)
 
     ``rest`` is what is left at p = 0. The pressure P_0 follows the present state in each residual: the contact's energy
     stays quadratic and its tangent symmetric, and at p = p_0 the closure is the law's. The bound b is r' at the peak of
-    the state that a solve starts from, and fades to nothing: where a law wears next to nothing at low pressures, a
-    place that comes into contact would else be thrown far past its pressure first.
+    the state that a solve starts from, and fades to nothing: without b, where a law wears almost nothing at low
+    pressures, the first iteration at a new contact point would overshoot far.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ class PressureWear:
 
     def __init__(self, law: WearLaw, *, modulus: float, coefficient: Coefficient | None = None) -> None:
         if law.needs_friction and coefficient is None:
-            raise SceneError("contact.wear_law", law, "wears by the work of friction: give the contact a friction")
+            raise SceneError("contact.wear_law", law, "wears by the work of friction: the contact needs a friction")
         self._law, self._least = law, LEAST * modulus
         self._coefficient = coefficient if law.needs_friction else None
         self._bound = ng.Parameter(0.0)
@@ -53,7 +53,7 @@ class PressureWear:
         """``slope`` [-], ``rest`` [MPa] and ``steepest`` [-] of the state's nominal pressure; ``stretch`` da/dA.
 
         ``steepest`` is the larger of r' and r / p, for the scale of the contact's method: where r' falls with the
-        pressure, a tangent overshoots to p < 0, and with a scale as small contact would be lost there.
+        pressure, a tangent overshoots to p < 0, and a scale as small as r' would lose the contact there.
         """
         self._state, self._tried = pressure, ng.GridFunction(pressure.space)
         p, least, law = self._tried / stretch, self._least, self._law

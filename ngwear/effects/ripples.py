@@ -1,4 +1,4 @@
-"""What keeps the pressure of a sliding contact smooth: its ripples rub a quarter of an element downstream."""
+"""Stabilisation of sliding contacts: the friction of pressure ripples acts a quarter of an element downstream."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ TOUCHING = 1e-2  # of the highest pressure: what counts as contact; below, a mes
 
 
 class Ripples:
-    """The pressure P of a contact less a smooth one, P_s, and the work of its friction done downstream.
+    """Ripples P - P_s of a contact's pressure P about a smooth one P_s, whose friction acts downstream.
 
     Friction of the ripple P - P_s acts at ``x + SHIFT h`` instead of x, in the direction in which it drags the rubber;
     h is the length of the mesh edge. In weak form the virtual displacement v there is ``v - SHIFT h dv/ds``. The

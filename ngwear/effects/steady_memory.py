@@ -1,4 +1,4 @@
-"""Memory in steady sliding: what relaxes while the material flows past the slider."""
+"""Viscoelasticity in steady sliding: relaxation while the material flows past the slider."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from ngwear.materials import Hyperelastic, PronySeries
 class SteadyMemory(Memory):
     """Arms of a generalised Maxwell model in the frame of a slider that moves along its track at constant speed.
 
-    What the reference material carries flows through the frame at -V along rows of the grid, so that time along
-    a row is ``t = -x / V`` and the arms are known at once:
+    The material flows through the frame at -V along rows of the grid, so that time along a row is ``t = -x / V``, and
+    the overstress of each arm is an integral along its row:
 
         Q_i = gamma_i (S - R_i S),   (R_i S)(x) = int_0^inf exp(-s / tau_i) S(x + V s) ds / tau_i.
 
@@ -29,9 +29,9 @@ class SteadyMemory(Memory):
     of the arms' stiffness implicitly and the rest as a known tensor, ``h = sum Q_i - share S``;
     ``equilibrium.steady_sliding`` repeats until h agrees with S.
 
-    On a straight track the material enters relaxed and undeformed: the grid must reach upstream to where nothing
-    happens yet. On a circular one it enters as it left, relaxed for the rest of the way around, undeformed there:
-    the slider has been running for ever.
+    On a straight track the material enters relaxed and undeformed: the grid must reach far enough upstream. On a
+    circular track it enters as it left, after relaxing undeformed on the rest of the circle: the stationary state after
+    many rounds.
 
     Parameters
     ----------
@@ -53,15 +53,15 @@ class SteadyMemory(Memory):
 
     @property
     def nbytes(self) -> int:
-        """Memory of the history and of its way from the grid to the points [bytes], whatever the number of arms."""
+        """Computer memory of the history and of its interpolation [bytes]; independent of the number of arms."""
         way = self._to_points
         return self.history.nbytes + self.grid.places.nbytes + way.data.nbytes + way.indices.nbytes + way.indptr.nbytes
 
     def set_speed(self, speed: float, wavelength: float) -> None:
         """Sliding speed [mm/s], and the length 2 pi / k of a pressure wave that sets the implicit share.
 
-        The share moves work between the solves and their repetition, not the solution; a quarter of the pressure's own
-        wave keeps the short ones at the ends of a contact from growing in the repetition.
+        The share changes the convergence, not the solution. A quarter of the pressure's own wave prevents short waves
+        at the ends of a contact from growing in the iteration.
         """
         if not speed > 0:
             raise SceneError("speed", speed, "steady sliding needs a speed above 0 mm/s; at rest solve the equilibrium")
@@ -107,9 +107,9 @@ class SteadyMemory(Memory):
     def drag(self) -> float:
         """Work that the overstress does on the material per length of track [N/mm, or N]; the friction force's.
 
-        ``-int sum Q_i : dC/dx / 2``: elastic work adds up to nothing along a track that starts and ends at rest. Summed
-        on the grid, apart from the equilibrium, with strains that are averaged at the mesh's vertices: the jumps of
-        the gradient from element to element would count as dissipation.
+        ``-int sum Q_i : dC/dx / 2``: the elastic work sums to zero along a track that starts and ends undeformed. The
+        integral is computed on the grid, with strains averaged at the mesh's vertices: jumps of the gradient between
+        elements would count as dissipation.
         """
         strain = self._grid_strain(smooth=True)
         stretching = Invariants.of(strain).stretching

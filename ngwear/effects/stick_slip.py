@@ -1,4 +1,4 @@
-"""Coulomb friction that sticks and slips: for reversals, partial slip, and surfaces that stand still."""
+"""Coulomb friction with stick and slip: for reversals, partial slip, and surfaces at rest."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ class StickSlip(Friction):
     (a rod that slides, a shaft that turns). One traction for each tangent.
 
     Newton's method is an active set for P, s and T together (Alart & Curnier, Comput. Methods Appl. Mech. Eng. 92
-    (1991) 353); its tangent is consistent and unsymmetric. Only ``commit`` moves the history, once a step is accepted.
-    The contact must stand before this term in the problem's list.
+    (1991) 353); its tangent is consistent and unsymmetric. Only ``commit``, after an accepted step, updates the
+    history. In the problem's list the contact must come before this term.
 
     Parameters and errors as of ``Friction``; the coefficient's distance and speed are those of the step.
     """
@@ -80,7 +80,7 @@ class StickSlip(Friction):
         return slips
 
     def begin(self) -> None:
-        """Let a stroke begin in the present state: slip, way and heat are counted from here."""
+        """Start a stroke at the present state: slip, distance and heat are counted from here."""
         self.travel.Set(0.0)
         self._count_from_here()
         self._spent, self._slid = 0.0, 0.0
@@ -89,7 +89,7 @@ class StickSlip(Friction):
         self._count_from_here()
 
     def _count_from_here(self) -> None:
-        """Let the next step's slip be counted from the present state."""
+        """Count the slip of the next step from the present state."""
         self._spent, self._slid = self.heat(0.0), self.slid()
         state, contact = self._unknowns.state, self.contact
         self._before.vec.data = state[DISPLACEMENT].vec
@@ -106,13 +106,13 @@ class StickSlip(Friction):
         )
 
     def heat(self, way: float) -> float:
-        """``- int T . s dA`` of the slip s since the stroke began, whatever the way."""
+        """``- int T . s dA`` of the slip s since the stroke began, independent of ``way``."""
         state = self._unknowns.state
         slips = self._slips(state, self.contact.surface.tangents(*self.contact.place(state)))
         return self._spent - self._integral(sum(state[n] * s for n, s in zip(self.tractions, slips, strict=True)))
 
     def slid(self) -> Array:
-        """Way that each surface element's middle has slipped since the stroke began [mm], in the contact's order."""
+        """Slip distance of each surface element's middle since the stroke began [mm], in the contact's order."""
         state = self._unknowns.state
         slips = self._slips(state, self.contact.surface.tangents(*self.contact.place(state)))
         return self._slid + self.contact.sample_middles(ng.sqrt(sum(s * s for s in slips)))
@@ -125,12 +125,12 @@ def _laws(
     bound: ng.CoefficientFunction,
     give: ng.CoefficientFunction,
 ) -> list[ng.CoefficientFunction]:
-    """What vanishes for each tangent: the slip where it sticks, the traction less its limit where it slips [mm].
+    """Residual for each tangent [mm]: the slip where it sticks, the traction minus its limit where it slips.
 
     A point sticks if ``|T - d| < mu P``, where d is the traction ``2 s / give`` of the slip, but a tenth of mu P at
-    most: one whose slip has turned round must stick before it slips the other way, or Newton swings between the two.
-    The tractions are constant on each mesh edge or face and the law holds in its middle: with one unknown for each end
-    they and the displacement of order 2 have as many, and the tractions ring.
+    most: a point whose slip direction changes must stick before it slips the other way, or Newton's method alternates
+    between the two. The tractions are constant on each mesh edge or face and the law holds in its middle: with one
+    unknown at each end there would be as many of them as displacements of order 2, and the tractions oscillate.
     """
     stiff = 2 / give
     if len(tractions) == 1:

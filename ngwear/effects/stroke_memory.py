@@ -1,4 +1,4 @@
-"""Memory of rubber in strokes: a known mean overstress, and its share that the stroke's own strain brings."""
+"""Viscoelasticity in strokes: a known mean overstress, and the part that depends on the stroke's own strain."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ngwear.materials import Hyperelastic, PronySeries
 class StrokeMemory(Memory):
     """Mean overstress of the arms over one stroke, ``share S + h`` (see ``ngwear.loop.memory_over_cycles``).
 
-    Takes no part in time steps: what a solve needs is told by ``hold``.
+    Has no time steps: ``hold`` sets the data of a solve.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class StrokeMemory(Memory):
         Of the long-term behaviour.
     series : PronySeries
     background : Background
-        Where h is known.
+        Points at which h is stored.
     """
 
     def __init__(self, material: Hyperelastic, series: PronySeries, background: Background) -> None:
@@ -33,7 +33,7 @@ class StrokeMemory(Memory):
         self._seat = unknowns.seat(self.background)
 
     def hold(self, share: float, history: Array) -> None:
-        """Set what stays fixed in the next solve; h at the background's points, shape (elements, 12, 4) [MPa]."""
+        """Set ``share`` and h for the next solve; h at the background's points, shape (elements, 12, 4) [MPa]."""
         self.share, self.history = share, self._seat.at_points(history)
 
     def stress(self) -> Array:

@@ -1,4 +1,4 @@
-"""Unilateral contact with a rigid surface, wear as a compliance included."""
+"""Unilateral contact with a rigid surface; wear enters as a compliance."""
 
 from __future__ import annotations
 
@@ -54,18 +54,18 @@ class UnilateralContact(Term):
     compliance : ng.Parameter
         kappa [mm/MPa].
     slips_in_part : bool
-        Set by a friction that sticks: kappa is then times ``share``, linear between mesh nodes and 1 at first, what
-        slips there over the way that the surface slides.
+        Set by friction with stick: kappa is then multiplied by ``share``, the slip over the sliding distance, linear
+        between mesh nodes and 1 at first.
     worn : ng.GridFunction or None
-        Depth that is worn in the same step whatever P [mm per reference area], of a contact that keeps one.
+        Depth worn in the same step independent of P [mm per reference area], if the contact has one.
     pressure_wear : PressureWear or None
         To be set before the contact is added to a form: a law of wear other than Archard's, by which kappa p becomes
         ``kappa p phi(p)``.
     finest : float
         Shortest of ``lengths`` [mm], once it has been added to a form.
     softness : ng.Parameter
-        Divides c, 1 at first. With a large c gaps decide where there is contact, and flat faces soon agree on
-        it; with a small one pressures do, and large steps into a strongly curved contact do not stall.
+        Divides c, 1 at first. With a large c the gaps decide where there is contact, which converges fast on flat
+        faces; with a small c the pressures decide, and large steps into a strongly curved contact converge.
     """
 
     _points: Any  # of the mesh, mapped
@@ -110,12 +110,12 @@ class UnilateralContact(Term):
         """Space of the nominal pressure on the named edges."""
 
     def measure(self) -> Any:
-        """Measure of the edges in which the law of contact is weighed."""
+        """Integration measure of the contact law on the edges."""
         return ng.ds(definedon=self._region, bonus_intorder=2)
 
     @abc.abstractmethod
     def lengths(self, unknowns: Unknowns) -> ng.GridFunction:
-        """Length of each surface element as it was made [mm]; constant on it, so that P adds up to what g asks."""
+        """Undeformed length of each surface element [mm]; constant on it."""
 
     @abc.abstractmethod
     def sample_middles(self, field: ng.CoefficientFunction) -> Array:
@@ -132,7 +132,7 @@ class UnilateralContact(Term):
         return spaces
 
     def motion(self, fields: dict[str, Any]) -> tuple[Any, ...]:
-        """Displacement of the surface, for trial functions or a state [mm]."""
+        """Displacement of the rigid surface [mm], for trial functions or a state."""
         travel = fields[self.travel_name] if self.force_controlled else self.load
         return tuple(travel * a for a in self.surface.approach)
 
@@ -147,7 +147,7 @@ class UnilateralContact(Term):
         return tuple(COORDINATES[i] + u[i] - m for i, m in enumerate(motion))
 
     def virtual(self, unknowns: Unknowns) -> tuple[Any, ...]:
-        """Virtual displacement of the part past the surface: a surface under force moves too, and carries friction."""
+        """Virtual displacement of the part past the surface: a surface under force moves too and transmits friction."""
         if not self.force_controlled:
             return tuple(unknowns.v[i] for i in range(len(self.surface.approach)))
         travel = unknowns.test[self.travel_name]
@@ -199,7 +199,7 @@ class UnilateralContact(Term):
             self.pressure_wear.gather()
 
     def wear_factor(self, pressure: Array) -> Array | float:
-        """What multiplies k p, of a law of wear that is not Archard's; of Cauchy pressures [MPa]."""
+        """Factor phi on k p of a law of wear other than Archard's, at Cauchy pressures [MPa]."""
         return 1.0 if self.pressure_wear is None else self.pressure_wear.factor(pressure)
 
     def force(self) -> Array:

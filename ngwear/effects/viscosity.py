@@ -1,4 +1,4 @@
-"""Rubber's memory: a generalised Maxwell model on the isochoric energy."""
+"""Viscoelasticity: a generalised Maxwell model on the isochoric energy."""
 
 from __future__ import annotations
 
@@ -24,9 +24,9 @@ class Viscosity(Memory):
         Q_i1 = E_i Q_i0 + gamma_i a_i (S_1 - S_0),   E_i = exp(-dt/tau_i),   a_i = (1 - E_i) tau_i / dt.
 
     So a step has the energy ``(sum gamma_i a_i) psi_iso(C) + h : C / 2`` with one known tensor
-    ``h = sum (E_i Q_i0 - gamma_i a_i S_0)``, whatever the number of arms. What is kept is not Q_i but what has
-    relaxed, ``q_i = gamma_i S - Q_i``: a slow arm has q near 0, a fast one q near gamma S, and neither is hurt by a
-    transfer to another mesh.
+    ``h = sum (E_i Q_i0 - gamma_i a_i S_0)``, whatever the number of arms. The stored variable is not Q_i but the
+    relaxed stress ``q_i = gamma_i S - Q_i``: it is near 0 for a slow arm and near gamma S for a fast one, which makes
+    its transfer to another mesh accurate.
 
     A time step of infinity, as at first, is the long-term equilibrium.
 
@@ -36,7 +36,7 @@ class Viscosity(Memory):
         Of the long-term behaviour.
     series : PronySeries
     background : Background or None
-        Keep the memory at its points instead of the body's own, so that it outlives the body's mesh (``take``).
+        Store the history at its points instead of the body's own, so that it can be used with another mesh (``take``).
     """
 
     def __init__(self, material: Hyperelastic, series: PronySeries, *, background: Background | None = None) -> None:
@@ -53,7 +53,7 @@ class Viscosity(Memory):
         self.set_time_step(math.inf)
 
     def take(self, before: Viscosity) -> None:
-        """Go on with the memory of a body that this one replaces; both share the background and the arms."""
+        """Take over the history from the term of a body that this one replaces; with the same background and arms."""
         if self.background is None or self.background is not before.background:
             raise SceneError("background", self.background, "memory moves to another mesh by a background of both")
         self.relaxed, self._start = before.relaxed.copy(), before._start.copy()

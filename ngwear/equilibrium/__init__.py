@@ -1,1 +1,1 @@
-"""The terms summed into one problem, solved by one Newton under one step control."""
+"""The sum of all terms as one nonlinear problem, its Newton solver and load stepping."""

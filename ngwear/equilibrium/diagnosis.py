@@ -1,4 +1,4 @@
-"""Why a walk found no equilibrium, measured on the last one: nothing holds the part, or its surface is unstable."""
+"""Diagnosis of a failed load step from its last equilibrium: a part that is not held, or an unstable surface."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by
 # Least principal stretch of a free surface in plane strain: creases (Hong et al., Appl. Phys. Lett. 95 (2009) 111901)
 # and wrinkles (Biot, Appl. Sci. Res. A 12 (1963) 168).
 CREASING, WRINKLING = 0.65, 0.544
-REMEDIES = "lower the friction or the load, go there in smaller steps, or take a stiffer rubber"
-NEAR = 1.03  # times the first: how far from it the last equilibrium before a failure may be
+REMEDIES = "lower the friction or the load, use smaller steps, or a stiffer rubber"
+NEAR = 1.03  # times the creasing stretch: the last equilibrium counts as near it up to here
 
 
 def diagnosis(problem: Problem) -> str:
-    """Sentences for the message of a walk that gave up; empty if nothing stands out."""
+    """Sentences for the message of a failed load step; empty if no cause is found."""
     found = [_unheld(problem), _unstable_surface(problem)]
     return "".join(f"\n{sentence}" for sentence in found if sentence)
 
@@ -50,7 +50,7 @@ def _unheld(problem: Problem) -> str:
             travels.append(f"surface '{contact.name}' under force touches nothing")
     directions = []
     for name, values in _rigid_motions(problem):
-        along = values.copy()  # the surfaces under force go with the part
+        along = values.copy()  # the surfaces under force move with the part
         for contact in contacts:
             i = "xyz".find(name[-1])
             along[problem.part(contact.travel_name)] = contact.surface.approach[i] if name[:-1] == "along " else 0.0
@@ -93,20 +93,20 @@ def _unstable_surface(problem: Problem) -> str:
         if isinstance(term, Friction) and isinstance(term.contact, OutlineContact) and term.contact.peak() > 0:
             contact = term.contact
             slip = abs(term.slip.Get()) if isinstance(term, FullSliding) else 1.0
-            told = (
+            cause = (
                 f"friction of {slip * term.mean():.3g} under p/G = {contact.peak() / contact.modulus:.2g} at contact "
             )
-            told += f"'{contact.name}' "
+            cause += f"'{contact.name}' "
             least, place = contact.least_stretch()
             if least <= NEAR * CREASING:
                 at = ", ".join(f"{x:.4g}" for x in place)
                 found.append(
-                    f"{told}compresses the surface at ({at}) to {least:.2g} of its length; it creases from {CREASING} "
+                    f"{cause}compresses the surface at ({at}) to {least:.2g} of its length; it creases from {CREASING} "
                     f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: {REMEDIES}"
                 )
             elif isinstance(term, FullSliding) and term.margin() < 0:
                 found.append(
-                    f"{told}is more than steady sliding bears: waves grow along the surface as they run (margin "
+                    f"{cause}is more than steady sliding bears: waves grow along the surface as they run (margin "
                     f"{term.margin():.2g}): {REMEDIES}"
                 )
     return "; ".join(found)

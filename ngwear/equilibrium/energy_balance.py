@@ -1,4 +1,4 @@
-"""Where the work goes in a run in time: stored in the rubber, stored in the arms of its memory, turned into heat."""
+"""Energy balance of a run in time: stored in the long-term rubber, stored in the Maxwell arms, turned into heat."""
 
 from __future__ import annotations
 
@@ -19,34 +19,35 @@ SHORT = 1e-4  # of a relaxation time: below, the exact integral over a step lose
 class EnergyBook:
     """Energies of a problem with elasticity and memory, in mJ (mJ/mm in plane strain).
 
-    What the surroundings put in goes three ways: ``work = elastic + arms + heat``, from a start at rest. An arm of the
+    The external work is ``work = elastic + arms + heat``, from a start at rest. An arm of the
     shear modulus ``gamma_i G`` under the Kirchhoff stress ``T = dev(F Q_i F^T)`` stores ``T : T / (4 gamma_i G)`` and
     turns ``T : T / (2 gamma_i G tau_i)`` a second into heat. Both hold at small strain; finite linear viscoelasticity
-    has no closed form (Holzapfel, *Nonlinear Solid Mechanics*, 2000, section 6.10; ``ngwear verify memory``: the book
-    misses 2 % of the work at 20 % of strain). Friction's work is not in it: multiply ``FullSliding.force`` by the way.
+    has no closed form (Holzapfel, *Nonlinear Solid Mechanics*, 2000, section 6.10; ``ngwear verify memory``: the
+    balance has an error of 2 % of the work at a strain of 20 %). The work of friction is not included: it is
+    ``FullSliding.force`` times the distance.
 
     Parameters
     ----------
     problem : Problem
     elasticity : Elasticity
     memory : Viscosity
-        With its memory at the problem's own points.
+        With its history at the problem's own points.
 
     Attributes
     ----------
     heat : float
-        Since the book was opened.
+        Heat since this object was made.
     """
 
     def __init__(self, problem: Problem, elasticity: Elasticity, memory: Viscosity) -> None:
         if memory.background is not None:
-            raise SceneError("memory", memory.background, "energies are booked where the memory has no background")
+            raise SceneError("memory", memory.background, "the energy balance needs a memory without background")
         self.problem, self.elasticity, self.memory = problem, elasticity, memory
         self.heat = 0.0
         self._overstress = self._look()
 
     def add(self) -> None:
-        """Book a step that has just been accepted; call it after each (``advance(..., on_step=...)``)."""
+        """Add the step that was accepted last; call it after each step (``advance(..., on_step=...)``)."""
         before, after = self._overstress, self._look()
         step, memory = self.memory.time_step, self.memory
         for start, end, ratio, time in zip(before, after, memory.ratios, memory.times, strict=True):

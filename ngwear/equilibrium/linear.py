@@ -1,4 +1,4 @@
-"""Sparse direct solvers: the cheapest one that is right for the matrix, its residual checked."""
+"""Sparse direct solvers, chosen by the matrix and the installation; the residual of each solve is checked."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Tangent:
         places = places[np.concatenate([[True], places[1:] > places[:-1]])]
         self._edge, self._inside = np.searchsorted(places, edge), np.searchsorted(places, inside)
         count = len(places)
-        entries = Array_I_S(count), Array_I_S(count), Array_D_S(count)  # given as lists they take longer than all else
+        entries = Array_I_S(count), Array_I_S(count), Array_D_S(count)  # Python lists are very slow
         for array, numbers in zip(entries, (places // size, places % size, 0.0), strict=True):
             array.NumPy()[:] = numbers
         self.matrix = ng.la.SparseMatrixd.CreateFromCOO(*entries, size, size)
@@ -70,15 +70,14 @@ class DirectSolver:
     """Factorise a tangent matrix again and again, reusing the symbolic part.
 
     Symmetric matrices take LDL^T, unsymmetric ones LU: by ``pardiso`` if the ``fast`` extra is installed, else by
-    ``sparsecholesky`` and ``umfpack``. NGSolve's ``sparsecholesky`` returns nonsense for an unsymmetric matrix
+    ``sparsecholesky`` and ``umfpack``. NGSolve's ``sparsecholesky`` returns a wrong solution for an unsymmetric matrix
     without an error; here the residual of every solve is checked.
 
-    With PARDISO (in its reproducible mode) the same matrix and right side give the same solution, bit for bit,
-    so that a run that is killed and resumed repeats itself; ``sparsecholesky`` differs from one factorisation to
-    the next by rounding. PARDISO orders and scales by the values of the first matrix that it sees and keeps to
-    that; a matrix with another contact then lost all but one digit. So it is shown one that depends on the
-    pattern only (diagonal 1, small pseudo-random numbers elsewhere: it pivots where it finds no symmetry), and
-    each matrix is scaled here.
+    With PARDISO (in its reproducible mode) the same matrix and right side give the same solution, bit for bit, so that
+    a resumed run gives the same numbers; ``sparsecholesky`` differs from one factorisation to the next by rounding.
+    PARDISO keeps the ordering and scaling of the first matrix; with another contact a matrix can then lose all but one
+    digit. So the first matrix depends on the pattern only (diagonal 1, small pseudo-random numbers elsewhere, which
+    make it pivot), and each matrix is scaled here.
 
     Parameters
     ----------
@@ -87,8 +86,7 @@ class DirectSolver:
         Unknowns that are not prescribed.
     symmetric : bool
     stiff : slice
-        Unknowns with a stiffness of their own (displacements); the others get their scale from their coupling
-        to these.
+        Unknowns with a stiffness on the diagonal (displacements); the others are scaled by their coupling to these.
     """
 
     def __init__(self, matrix: ng.BaseMatrix, free: ng.BitArray, *, symmetric: bool, stiff: slice) -> None:
@@ -145,7 +143,7 @@ class DirectSolver:
         return 1 / np.where(size > 0, size, 1.0)
 
     def scaled_norm(self, residual: ng.BaseVector) -> float:
-        """Norm of a residual in which displacements and other unknowns count alike."""
+        """Norm of a residual, scaled so that displacements and other unknowns have equal weight."""
         return float(np.linalg.norm((self._unit * residual.FV().NumPy())[self._mask]))
 
     def solve(self, right_side: ng.BaseVector, solution: ng.BaseVector) -> float:

@@ -1,4 +1,4 @@
-"""Keep a problem's states when elements are lost: every unknown that is left has its value."""
+"""Transfer a problem's states when elements are lost: every remaining unknown has its old value."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from ngwear.geometry.element_body import ElementBody, Index, elements
 NONE = -1
 
 
-def keep(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
+def transfer_to_remaining(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     """State vectors of ``old`` on the elements that ``new`` still has.
 
-    A point that another has been merged with keeps its own values; surfaces that were inside begin without pressure.
+    Of two merged points the remaining one has its own values; new surfaces start without pressure.
     """
     was, now = elements(old.body), elements(new.body)
     inside = _unknowns(was, now)

@@ -1,4 +1,4 @@
-"""Newton's method that says why it stopped."""
+"""Newton's method; its report states why it stopped."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from ngwear.equilibrium.problem import Problem
 
 
 class Outcome(enum.Enum):
-    """How a solve ended, as advice."""
+    """How a solve ended, with a remedy."""
 
     CONVERGED = "converged"
     TOO_MANY_ITERATIONS = "no convergence: take smaller load steps"
     FOLDED = "an element would turn inside out: take smaller load steps or refine there"
     SINGULAR = "the tangent is singular: is the body held, and does every force-controlled surface touch it?"
     STALLED = "the corrections do not shrink: take smaller load steps"
-    BAD_START = "the first guess has folded elements: start from a state nearer to the solution"
+    BAD_START = "the start state has inverted elements: start from a state closer to the solution"
 
 
 SOFTNESS = (1.0, 10.0)  # of the contacts, one after the other: the second gets large steps onto curved contacts through
@@ -33,8 +33,8 @@ HALVINGS = 7  # of a correction that would fold an element: to 1/64 of it; short
 # steps took 5.2 iterations with LEAVES = 0.01 and 4.7 with 0.02 (``verify shaft_on_plate``; tutorial 2 for SMALL).
 NEARLY = 1e3  # times the tolerance: a correction after which the tangent is kept,
 SMALL = 0.05  # of the shortest element edge in contact, too
-SHRINKS = 0.3  # times the correction before: the next, if the tangent is to be kept on
-LEAVES = 0.02  # times the tolerance: what a correction by a kept tangent may leave
+SHRINKS = 0.3  # times the correction before: the next, if the tangent is to be reused further
+LEAVES = 0.02  # times the tolerance: error that a correction by a reused tangent may leave
 EXACT = 1e-2  # of the residual left by a correction: its tangent is as good as Newton's own
 PATIENCE = 8  # iterations within which the smallest correction must halve; an active set needs some to settle
 
@@ -52,8 +52,8 @@ class NewtonOptions:
         Largest accepted last correction of a nominal traction in contact over the highest one [-].
     max_iterations : int
     reuse : bool
-        Begin with the tangent of the solve before, and keep it as long as a correction takes the residual away. What
-        a correction leaves of it is the size of the next one over its own.
+        Start with the tangent of the previous solve, and reuse it as long as the corrections reduce the residual fast.
+        The share of the residual that a correction leaves is the ratio of the next correction to it.
     """
 
     tolerance: float = 1e-7  # of the section: 0.5 nm of one of 5 mm
@@ -64,7 +64,7 @@ class NewtonOptions:
 
 @dataclass
 class Report:
-    """What a solve did."""
+    """Report of a solve."""
 
     outcome: Outcome
     iterations: int = 0
@@ -86,8 +86,8 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
     """Bring the problem's state to equilibrium under its present loads.
 
     On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
-    somewhere) are refused and the correction is halved, a few times. A solve that gets nowhere is tried
-    once more with softer contacts (see ``OutlineContact``).
+    somewhere) are refused and the correction is halved, a few times. A solve that does not converge is tried once more
+    with softer contacts (see ``UnilateralContact``).
     """
     options = options or NewtonOptions()
     for term in problem.terms:
@@ -152,7 +152,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         change = step * float(np.abs(correction.FV().NumPy()[u]).max())
         report.corrections.append(change)
         goal = options.tolerance * size
-        # Far below the goal the displacement is exact, and pressures still moving do no work on it.
+        # Far below the tolerance the displacement is exact, and further changes of pressure do no work.
         settled = change <= 1e-4 * goal or _settled(vector, correction, pressures, options.pressure_tolerance, left)
         leaves = change * _ratio(report.corrections) if kept and not options.reuse else 0.0
         if step == 1.0 and change <= goal and leaves <= LEAVES * goal and settled:
@@ -167,7 +167,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
 def _settled(
     vector: ng.BaseVector, correction: ng.BaseVector, parts: list[slice], tolerance: float, left: float
 ) -> bool:
-    """Whether the last correction, times ``left``, leaves the tractions alone: on a stiff body they follow."""
+    """Whether the last correction, times ``left``, is small for the tractions too (on a stiff body)."""
     values, change = vector.FV().NumPy(), correction.FV().NumPy()
     highest = max((np.abs(values[p]).max() for p in parts), default=0.0)
     moved = max((np.abs(change[p]).max() for p in parts), default=0.0)
@@ -175,11 +175,10 @@ def _settled(
 
 
 def _will_do(corrections: list[float], mark: float, *, kept: bool) -> bool:
-    """Whether the tangent at hand will do once more.
+    """Whether the present tangent can be reused.
 
-    It will after the first correction so small that it differs from Newton's own by little, about that correction over
-    the size of an element in contact, and then as long as corrections shrink: assembly and factorisation are four
-    fifths of an iteration.
+    It can after the first correction that is small compared with an element in contact, since it then differs little
+    from Newton's own, and as long as corrections shrink. Assembly and factorisation are four fifths of an iteration.
     """
     if len(corrections) < 2 or corrections[-1] > mark:
         return False
@@ -188,12 +187,12 @@ def _will_do(corrections: list[float], mark: float, *, kept: bool) -> bool:
 
 
 def _ratio(corrections: list[float]) -> float:
-    """The last correction over the one before: by a tangent that is kept, also the next one over the last."""
+    """The last correction over the one before; with a reused tangent also the next one over the last."""
     return corrections[-1] / corrections[-2] if len(corrections) > 1 and corrections[-2] > 0 else 0.0
 
 
 def _stalled(corrections: list[float]) -> bool:
-    """Whether the last few corrections bring nothing that those before had not reached."""
+    """Whether the last few corrections are not smaller than those before."""
     if len(corrections) <= PATIENCE:
         return False
     return min(corrections[-PATIENCE:]) > 0.5 * min(corrections[:-PATIENCE])

@@ -55,7 +55,7 @@ class Problem:
     body : Meshed
     kinematics : Kinematics
     terms : sequence of Term
-        Only what is listed exists: no unknown, memory or zero term of anything else.
+        Effects that are not listed add no unknown, no memory and no zero term.
     supports : sequence of FixedEdges
     order : int
         Polynomial order of the displacement.
@@ -114,13 +114,13 @@ class Problem:
     def points(self) -> MaterialPoints:
         """The material points; SceneError if no term is of the part's inside."""
         if self._points is None:
-            raise SceneError("terms", self.names, "none is of the part's inside: there are no material points")
+            raise SceneError("terms", self.names, "no term acts inside the part: there are no material points")
         return self._points
 
     def freeze_imbalance(self) -> None:
         """Take the present residual as a fictitious load, so that the present state is an equilibrium.
 
-        The load ``"imbalance"`` is set to 1; walking it to 0 leads from any admissible guess to the solution
+        The load ``"imbalance"`` is set to 1; its decrease to 0 leads from any admissible state to the solution
         (Newton homotopy).
         """
         self._imbalance = None
@@ -130,7 +130,7 @@ class Problem:
         self.parameters[IMBALANCE] = ng.Parameter(1.0)
 
     def drop_imbalance(self) -> None:
-        """Forget the fictitious load."""
+        """Remove the fictitious load."""
         self._imbalance = None
         self.parameters.pop(IMBALANCE, None)
 
@@ -172,7 +172,8 @@ class Problem:
     def threads(self) -> Iterator[None]:
         """Context of a solve: all cores if the problem is large enough to gain by them, else one; BLAS has one.
 
-        Its products here are too small to share, and threads that wait for more would take a companion's core.
+        The products here are too small for several threads, and waiting threads would take the core of a run beside
+        this one.
         """
         large = self.space.ndof >= THREADED_FROM
         with _blas().limit(limits=1), ng.TaskManager() if large else nullcontext():

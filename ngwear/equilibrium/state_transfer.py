@@ -1,4 +1,4 @@
-"""Carry a problem's states to another mesh of the same section."""
+"""Transfer a problem's states to another mesh of the same section."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from ngwear.fields.transfer import PointSearch
 from ngwear.geometry import nodal
 from ngwear.geometry.harmonic import HarmonicFill
 
-if TYPE_CHECKING:  # nothing sticks, no import of it
+if TYPE_CHECKING:  # imported only if friction sticks
     from ngwear.effects.stick_slip import StickSlip
 
 Array = NDArray[np.float64]
 LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled: half of what rubber shall bear
 
 
-def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
-    """Interpolate state vectors of ``old`` to the mesh of ``new``; a first guess, not an equilibrium.
+def transfer(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
+    """Interpolate state vectors of ``old`` to the mesh of ``new``; a start state, not an equilibrium.
 
     Displacement and volumetric stress are taken at the new nodes (the nearest old point for a node just outside),
     contact pressures from the two nearest old nodes of the outline, tractions from the nearest edge, travels of rigid
@@ -63,8 +63,8 @@ def carry(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
     return carried
 
 
-def carry_solid(old: Problem, new: Problem) -> None:
-    """Take the state of a solid, and of the patch pressed on it, to another mesh of the same solid; a first guess."""
+def transfer_solid(old: Problem, new: Problem) -> None:
+    """Transfer the state of a solid and its contact to another mesh of the same solid; a start state."""
     target = new.state.vec.FV().NumPy()
     _take_inside(PointSearch(old.body.mesh, _node_places(new)), old, new, target)
     before, after = ([t for t in p.terms if isinstance(t, PatchContact)] for p in (old, new))
@@ -85,7 +85,7 @@ def _take_inside(search: PointSearch, old: Problem, new: Problem, target: Array)
 
 
 def unfold(problem: Problem) -> None:
-    """Refill the displacement harmonically around elements that a first guess has crushed or turned over."""
+    """Replace the displacement around crushed or inverted elements of a start state by a harmonic extension."""
     mesh, u, points = problem.body.mesh, problem.fields[DISPLACEMENT], problem.points
     points.follow()
     corners: NDArray[np.intp] | None = None
@@ -122,7 +122,7 @@ def _fill_harmonically(u: ng.GridFunction, marked: NDArray[np.bool_]) -> None:
 
 
 def contact_pairs(old: Problem, new: Problem) -> list[tuple[OutlineContact, OutlineContact]]:
-    """Contacts of one problem beside those of another of the same scene."""
+    """Pairs of the same contact in two problems of the same scene."""
     before = {t.name: t for t in old.terms if isinstance(t, OutlineContact)}
     return [(before[t.name], t) for t in new.terms if isinstance(t, OutlineContact)]
 

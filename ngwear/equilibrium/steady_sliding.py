@@ -1,4 +1,4 @@
-"""Steady sliding of a material with memory: the state that its own history brings about."""
+"""Steady sliding of a viscoelastic material: iteration between equilibrium and history."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ngwear.errors import ConvergenceError
 
 @dataclass(frozen=True)
 class SteadyOptions:
-    """When the history counts as found.
+    """When the history counts as converged.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions 
     Raises
     ------
     ConvergenceError
-        If a solve fails, or the history has not been found after ``max_rounds``.
+        If a solve fails, or the history has not converged after ``max_rounds``.
     """
     options = options or SteadyOptions()
     work = Work()
@@ -63,7 +63,7 @@ def solve_steady(problem: Problem, memory: SteadyMemory, options: SteadyOptions 
 
 
 def _accelerated(tried: list[np.ndarray], missed: list[np.ndarray], weight: np.ndarray) -> np.ndarray:
-    """Combination of the earlier rounds with the least miss, and its miss added."""
+    """Combination of the earlier rounds with the least residual, plus that residual."""
     last, miss = tried[-1], missed[-1]
     if len(tried) == 1:
         return last + miss

@@ -1,4 +1,4 @@
-"""Load steps: predicted from the last two states, cut back when a solve fails, grown when it is easy."""
+"""Load steps with a prediction from the last two states; shorter after a failed solve, longer after an easy one."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ LOOSER = 1e3  # tolerance of a solve on the way over the last one's, if it only 
 
 @dataclass(frozen=True)
 class StepOptions:
-    """How to walk from one set of loads to another.
+    """Step control from one set of loads to another.
 
     Parameters
     ----------
     first : float
-        Fraction of the way tried first, in (0, 1].
+        Fraction of the load change tried first, in (0, 1].
     smallest : float
-        Fraction below which the walk gives up.
+        Fraction below which the stepping gives up.
     easy : int
         Iterations up to which the next step grows.
     max_updates : int
@@ -39,7 +39,7 @@ class StepOptions:
 
 @dataclass
 class Work:
-    """What a walk cost: solves, Newton iterations and steps that were cut back."""
+    """Cost of load steps: solves, Newton iterations and retries with a shorter step."""
 
     solves: int = 0
     iterations: int = 0
@@ -52,7 +52,7 @@ class Work:
         self.retries += not report.converged
 
     def add(self, other: Work) -> None:
-        """Add another walk's cost."""
+        """Add another cost."""
         self.solves += other.solves
         self.iterations += other.iterations
         self.retries += other.retries
@@ -78,11 +78,11 @@ def advance(
     duration: float = math.inf,
     on_step: Callable[[float, Report], None] | None = None,
 ) -> Work:
-    """Walk the problem from its present equilibrium and loads to ``target``.
+    """Change the loads in steps from the present equilibrium to ``target``.
 
-    Loads vary linearly along the way, which takes ``duration`` seconds; every accepted step is committed to
-    memory. On the way out of a guess that takes no time only the last is: what sticks would slip by states through
-    which nothing goes. ``on_step`` is called with the fraction reached and the report of its solve.
+    Loads vary linearly in ``duration`` seconds, and every accepted step is committed to the history. On the way from a
+    start state that is not an equilibrium, only the last step is committed: the intermediate states are fictitious, and
+    sticking points must not slip by them. ``on_step`` is called with the fraction reached and the report of its solve.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def advance(
         problem.set_time_step(step * duration)
         if have_rate:
             vector.data = last + step * rate
-        # On the way out of a guess the front stays: moving it would undo the balance walked from.
+        # With an imbalance load the fluid front stays: moving it would change that load.
         update = IMBALANCE not in target or goal == 1.0
         here = options if goal == 1.0 else on_the_way
         report = settle(problem, here, work, update=update)
@@ -149,9 +149,10 @@ def relax(
     duration: float = math.inf,
     on_step: Callable[[float, Report], None] | None = None,
 ) -> Work:
-    """Walk from the present state, any admissible guess, to the equilibrium under the present loads.
+    """Find the equilibrium under the present loads from the present state, any admissible one.
 
-    The guess's imbalance becomes a fictitious load that is taken away in steps. Arguments and errors as of ``advance``.
+    The imbalance of the start state becomes a fictitious load, which is removed in steps. Arguments and errors as of
+    ``advance``.
     """
     problem.freeze_imbalance()
     try:

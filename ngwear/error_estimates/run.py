@@ -6,11 +6,12 @@ import tempfile
 from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
-from typing import overload
+from typing import Any, overload
 
 from ngwear.errors import SceneError
 from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
+from ngwear.results.recorder import Recorder
 from ngwear.scene.accuracy import PRESETS, Accuracy
 from ngwear.scene.pin_scene import PinScene
 from ngwear.scene.scene import Scene
@@ -66,7 +67,8 @@ def run(
         Replaces the accuracy of the scene: a preset (``"draft"``, ``"engineering"``, ``"reference"``), or the allowed
         relative error of the maximum depth, such as 0.01.
     alone : bool
-        Without coarser runs: the error of the mesh is not estimated.
+        Without coarser runs: the error of the mesh is not estimated. A scene that requests an error is run at the first
+        level only, with a warning.
     resume : bool
         Continue the run in the folder.
     progress : bool
@@ -101,12 +103,7 @@ def run(
             found = run_pin(scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps)
             return found if keeps else replace(found, folder=None)
         if alone:
-            from ngwear.loop.run import run as run_alone
-
-            if scene.accuracy.error is not None:
-                raise SceneError("run.alone", alone, "accuracy.error needs several runs: give only one of them")
-            where = path if keeps else None
-            return run_alone(scene, out=where, resume=resume, progress=progress, throw=throw, figures=keeps)
+            return _run_alone(scene, path if keeps else None, resume=resume, progress=progress, throw=throw)
         if scene.accuracy.error is not None:
             from ngwear.error_estimates.run_to_error import run_to_error
 
@@ -120,6 +117,25 @@ def run(
                 scene, out=path, resume=resume, progress=progress, throw=throw, figures=keeps, worker=worker
             )
         return result if keeps else replace(result, folder=None)
+
+
+def _run_alone(scene: Scene, out: Path | None, *, resume: bool, progress: bool, throw: bool) -> Result:
+    """Run a scene without coarser runs; one that asks for an error by the level that such runs begin with."""
+    from ngwear.loop.run import run as run_scene
+
+    asks = scene.accuracy.error is not None
+    if asks:
+        from ngwear.error_estimates.run_to_error import first_level
+
+        scene = first_level(scene)
+
+    def warn(_: Recorder, summary: dict[str, Any]) -> None:
+        if asks:
+            summary["warnings"].append("run alone: the error that the scene asks for is not checked")
+
+    return run_scene(
+        scene, out=out, resume=resume, progress=progress, throw=throw, figures=out is not None, errors=warn
+    )
 
 
 def with_accuracy(scene: Scene | PinScene, accuracy: str | float | Accuracy | None) -> Scene | PinScene:

@@ -159,6 +159,12 @@ def at_level(scene: Scene, across: float, parts: int = 1) -> Scene:
     return replace(scene, accuracy=replace(scene.accuracy.with_across(across), parts=parts))
 
 
+def first_level(scene: Scene) -> Scene:
+    """The scene at the level with which a run to its requested error begins."""
+    asked = requested_errors(scene)
+    return at_level(scene, first_across(asked[DEPTH], asked.get(PEAK)), scene.accuracy.parts)
+
+
 def requested_errors(scene: Scene) -> dict[str, float]:
     """Errors that a scene requests, by their names in the summary."""
     accuracy = scene.accuracy

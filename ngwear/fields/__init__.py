@@ -1,1 +1,1 @@
-"""Kinematics of the section, and the move of fields to another mesh."""
+"""Kinematics, integration points, and transfer of fields to another mesh."""

@@ -1,4 +1,4 @@
-"""Memory on a mesh that never changes: fixed points of the unworn section, under the present body."""
+"""Viscoelastic history on a mesh that never changes: fixed points of the unworn section."""
 
 from __future__ import annotations
 
@@ -21,14 +21,13 @@ RULE = 6  # order of the rule: 12 points a triangle; with 6 the fit is unstable
 class Background:
     """Integration points of a mesh of the unworn section, twelve in each triangle.
 
-    Material points do not move in the reference configuration, and the worn section is a part of the unworn one: what
-    is kept here is never moved to another mesh and does not diffuse.
+    Material points do not move in the reference configuration, and the worn section is a part of the unworn one: the
+    history stored here is never transferred to another mesh and does not diffuse.
 
     Parameters
     ----------
     body : Body
-        As it was meshed; its elements as fine as the wear's patch where the contact is or may come. It must not be
-        moved.
+        Unmoved, as it was meshed; with elements as small as those of the contact patch wherever the contact may come.
 
     Attributes
     ----------
@@ -49,12 +48,12 @@ class Background:
         self._fit = np.linalg.pinv(_quadratic(*np.array(rule.points)[:, :2].T))
 
     def to_data(self) -> dict[str, Any]:
-        """What ``from_data`` makes the same background of, to the last bit."""
+        """Data from which ``from_data`` restores the background exactly."""
         return {"body": self.body}
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> Background:
-        """The background again."""
+        """Restore the background."""
         return cls(data["body"])
 
     def fitted(self, values: Array) -> Array:
@@ -63,7 +62,7 @@ class Background:
 
 
 class Seat:
-    """A background and a body on it: where the points of each lie in the other.
+    """A body on a background: positions of the points of each in the mesh of the other.
 
     Parameters
     ----------
@@ -90,7 +89,7 @@ class Seat:
         self._gradient, self._hoop = ng.Grad(displacement), kinematics.hoop_stretch(displacement)
         self._places = background.places.reshape(-1, 2)
         self._on_body = Locator(body.mesh, self._places)
-        # Both start from the body as it was meshed, so that a resumed run finds the same bits.
+        # Both start from the body as it was meshed, so that a resumed run gives exactly the same numbers.
         active = body.mesh.deformation
         body.mesh.UnsetDeformation()
         self._on_background = Locator(background.body.mesh, points.places.reshape(-1, 2))

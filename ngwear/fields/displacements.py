@@ -1,4 +1,4 @@
-"""Displacements of order 1, 2 or 3, and what pairs with them."""
+"""Finite element spaces of displacements of order 1, 2 or 3, and the order of the volumetric stress."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ BUBBLE = 3  # order of the function that vanishes on the edges of a triangle
 def displacements(mesh: ng.Mesh, order: int, **held: str) -> ng.FESpace:
     """Space of displacements.
 
-    Those of order 1 have a bubble in each triangle: without it a continuous volumetric stress of order 1 rings (MINI
-    element of Arnold, Brezzi & Fortin, Calcolo 21 (1984) 337). It is for sections of triangles only.
+    Those of order 1 have a bubble in each triangle: without it a continuous volumetric stress of order 1 oscillates
+    (MINI element of Arnold, Brezzi & Fortin, Calcolo 21 (1984) 337). It is for sections of triangles only.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ def stress_order(order: int) -> int:
 
 
 def from_quadratic(values: Array, space: ng.FESpace, edges: NDArray[np.intp]) -> Array:
-    """Unknowns of a scalar H1 field on simplices from those of one of order 2; order 1 leaves out what it cannot show.
+    """Unknowns of a scalar H1 field on simplices from those of order 2; for order 1 the quadratic part is dropped.
 
     A field of order k has k - 1 unknowns for each of the mesh's edges, the first of which is that of order 2; the
     others become 0.

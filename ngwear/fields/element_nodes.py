@@ -42,9 +42,9 @@ class ElementNodes:
         self.triangles = np.hstack([corners[0], middles[: 3 * len(corners[0])].reshape(-1, 3)])
         self.quadrilaterals = np.hstack([corners[1], middles[3 * len(corners[0]) :].reshape(-1, 4), centres[:, None]])
         self.count = centre + len(centres)
-        self._lay_points(mesh, quads)
+        self._place_points(mesh, quads)
 
-    def _lay_points(self, mesh: ng.Mesh, quads: NDArray[np.bool_]) -> None:
+    def _place_points(self, mesh: ng.Mesh, quads: NDArray[np.bool_]) -> None:
         """Points of the elements, one after the other, at their nodes."""
         rules = {}
         for n in {4 if quad else 3 for quad in quads.tolist()}:

@@ -2,7 +2,7 @@
 
 Where types are mixed, an element with fewer points or unknowns than another is filled up to its number: by its first
 point again, of weight 0, and by its first unknown again, with a shape function of 0. Then the same arrays hold for all
-types; a triangle among quadrilaterals costs what a quadrilateral costs.
+types; a triangle then costs as much as a quadrilateral.
 """
 
 from __future__ import annotations

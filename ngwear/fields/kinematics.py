@@ -12,7 +12,7 @@ import ngsolve as ng
 class Kinematics(abc.ABC):
     """Strain measures of a part with displacement u, of a section also with a hoop stretch.
 
-    All quantities are per reference measure; integrals over the part or its surface carry ``weight``:
+    All quantities are per reference measure; integrals over the part or its surface have the factor ``weight``:
     1 for a solid and for plane strain (per mm of thickness), 2 pi R for axisymmetry.
     """
 

@@ -1,4 +1,4 @@
-"""Follow points through a mesh whose outline moves a little, without searching all of it again."""
+"""Locate points in a mesh again after small moves of its outline, without a full search."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def _inverted(maps: Array, points: Array, place: Array) -> Array:
         along, across = gx + 2 * xx * x + xy * y, gy + 2 * yy * y + xy * x
         det = along[0] * across[1] - along[1] * across[0]
         step = np.stack([off[0] * across[1] - off[1] * across[0], along[0] * off[1] - along[1] * off[0]]) / det
-        found = np.clip(np.stack([x, y]) - step, -3.0, 4.0)  # far outside the map may fold
+        found = np.clip(np.stack([x, y]) - step, -3.0, 4.0)  # far outside the map may not be unique
         place[still] = found.T
         left = np.abs(step).max(axis=0) > 1e-10
         if not left.any():

@@ -1,4 +1,4 @@
-"""The integration points of a part: strain there from the unknowns, nodal forces and stiffness back.
+"""Integration points of a part: strains from the unknowns, nodal forces and stiffness from stresses.
 
 All points are treated at once, as arrays. A symbolic energy in NGSolve is evaluated element by element once
 for each pair of strain components: five times the time for the same numbers (``test_material_points.py``
@@ -21,7 +21,7 @@ from ngwear.geometry.meshed import Meshed
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 EXACT = {2: 2.0, 3: 1.0}  # order of the rule over that of the displacement: 4 points suffice in a tetrahedron
-BUBBLES = 2  # what counts as the order of displacements of order 1: their bubbles are to be felt
+BUBBLES = 2  # integration order for displacements of order 1, so that their bubbles are integrated
 
 
 class MaterialPoints:
@@ -70,7 +70,7 @@ class MaterialPoints:
         self._measure()
 
     def follow(self) -> None:
-        """Measure anew if the outline has moved."""
+        """Update B and the volumes if the outline has moved."""
         if self._moves != self.body.moves:
             self._measure()
 
@@ -96,7 +96,7 @@ class MaterialPoints:
 
     @property
     def nbytes(self) -> int:
-        """Memory of what is kept at the points [bytes]."""
+        """Memory of the arrays stored at the points [bytes]."""
         return self._elements.nbytes + self.volumes.nbytes + self.unknowns.nbytes
 
     @property

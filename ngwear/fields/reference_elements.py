@@ -48,7 +48,7 @@ class ReferenceElements:
         n, m = shapes.shape[-1], stress_shapes.shape[-1]
         starts = [*range(0, n * self._dim + 1, n), n * self._dim + m]
         self._places = [slice(a, b) for a, b in pairwise(starts)]
-        alike: dict[bytes, list[Index]] = {}  # a low order does not know of the vertices' order
+        alike: dict[bytes, list[Index]] = {}  # for a low order the order of the vertices does not matter
         for members in kinds:
             content = b"".join(a[members[0]].tobytes() for a in (shapes, slopes, stress_shapes))
             alike.setdefault(content, []).append(members)
@@ -72,7 +72,7 @@ class ReferenceElements:
 
     @property
     def nbytes(self) -> int:
-        """Memory of what is kept at the points [bytes]."""
+        """Memory of the arrays stored at the points [bytes]."""
         return self._inverse.nbytes + self._weighted.nbytes + 2 * self._round.nbytes
 
     def strain(self, unknowns: Array) -> Array:
@@ -133,7 +133,7 @@ class ReferenceElements:
         return [*range(dim * field, dim * (field + 1)), *([dim * dim] if self._hoop and field == 1 else [])]
 
     def _pulled(self, field: int, entry: Callable[[int], Array], *, weighted: bool = False) -> list[Array]:
-        """What stands before each row of a field on the reference element, of entries by the strains."""
+        """Coefficients of each row of a field on the reference element, from entries by the strains."""
         dim = self._dim
         inverse = self._weighted if weighted else self._inverse
         if field == dim:

@@ -38,7 +38,7 @@ class StreamGrid:
 
     @property
     def circular(self) -> bool:
-        """Whether the track comes back to where it began."""
+        """Whether the track is a circle."""
         return math.isfinite(self.track_radius)
 
     @property

@@ -34,12 +34,12 @@ class Body(MeshedSection):
     field : SizeField
         Wanted element edges.
     on_chord : bool
-        Add points to the outline, where the field asks for them, without changing the polygon's area.
+        Insert the points that the field requires on the polygon, so that its area does not change.
 
     Raises
     ------
     MeshError
-        If the new mesh does not pass its gates.
+        If the new mesh does not pass its checks.
     """
 
     def __init__(self, contour: Outline, field: SizeField, *, on_chord: bool = False) -> None:
@@ -53,7 +53,7 @@ class Body(MeshedSection):
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=2))
 
     def to_data(self) -> dict[str, Any]:
-        """What ``from_data`` makes the same body of, to the last bit."""
+        """Data from which ``from_data`` restores the body exactly."""
         return {
             "field": self.field,
             "base": self.base,
@@ -65,7 +65,7 @@ class Body(MeshedSection):
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> Body:
-        """The body again; its mesh is not made anew."""
+        """Restore the body; the mesh is not generated again."""
         body = cls.__new__(cls)
         body.field, body.base, body.contour, body.nodes = (data[name] for name in ("field", "base", "contour", "nodes"))
         body.mesh = saved_mesh.from_arrays(body.base, body.nodes, data["mesh"])
@@ -76,7 +76,7 @@ class Body(MeshedSection):
 
     @cached_property
     def _extension(self) -> HarmonicFill:
-        """Harmonic extension of one component of the outline's displacement into the mesh as it was made."""
+        """Harmonic extension of one component of the outline's displacement into the undeformed mesh."""
         self.mesh.UnsetDeformation()
         space = ng.H1(self.mesh, order=2, dirichlet=".*")
         u, v = space.TnT()
@@ -103,7 +103,7 @@ class Body(MeshedSection):
         self._deform()
 
     def _deform(self) -> None:
-        """Let the mesh be where the outline is."""
+        """Move the mesh to the present outline."""
         if np.any(self.contour.points != self.base.points):
             self.mesh.SetDeformation(self.deformation)
         else:
@@ -118,7 +118,7 @@ class Body(MeshedSection):
 
 
 def _meshed(contour: Outline, field: SizeField) -> tuple[ng.Mesh, NDArray[np.intp]]:
-    """Mesh of an outline, with shorter edges where it turns until it passes its gates, or none does; and its nodes."""
+    """Mesh of an outline and its nodes, with shorter edges where it turns until the mesh passes its checks."""
     for finer in FINER:
         turn, elsewhere = field.turn / finer, field.elsewhere / finer
         closer = replace(field, turn=turn, elsewhere=elsewhere, per_radius=field.per_radius * finer)

@@ -1,4 +1,4 @@
-"""A section as a list of straight elements that can be lost one by one."""
+"""A section as a list of elements with straight edges, which can be lost one by one."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ CUT = 0.05  # of the section: how much may come loose at once before it counts a
 
 
 class Fate(enum.IntEnum):
-    """What has become of an element."""
+    """State of an element."""
 
     LIVING = 0
     TORN = 1
@@ -30,7 +30,7 @@ class Fate(enum.IntEnum):
 
 @dataclass(frozen=True)
 class Cells:
-    """Quadrilaterals and triangles with straight edges; the area of the living ones is the section's.
+    """Quadrilaterals and triangles with straight edges; those with the state LIVING make up the section.
 
     Parameters
     ----------
@@ -47,9 +47,9 @@ class Cells:
     below : array of int, shape (n,)
         Next point inwards on each point's column; -1 for none.
     made : array, shape (m,)
-        Least corner Jacobian of each element as it was made, see ``least_jacobian`` [mm²].
+        Least corner Jacobian of each element when it was made, see ``least_jacobians`` [mm²].
     layers : array of bool, shape (m,)
-        Which elements were made as quadrilaterals, in the layers that may be lost.
+        Which elements were made as quadrilaterals of the layers, which may be lost.
     provenance : str
         Where the outline comes from.
     """
@@ -121,7 +121,7 @@ class Cells:
         return Outline(self.points[self.rim], self.names, np.ones(len(self.rim), dtype=bool), self.provenance)
 
     def moved(self, points: Array) -> Cells:
-        """The same with the outline's points elsewhere, shape (k, 2); those inside stay."""
+        """The same cells with the outline's points moved to ``points``, shape (k, 2); inner points stay."""
         everywhere = self.points.copy()
         everywhere[self.rim] = points
         return replace(self, points=everywhere)
@@ -134,7 +134,8 @@ class Cells:
         return np.divide(way, length, out=np.zeros_like(way), where=length > 0)
 
     def merged(self, surface: Index) -> Cells:
-        """The same with points of the outline and the next ones on their columns made one, where the former are.
+        """The same cells, each given outline point merged with the next point of its column, at the place of the
+        former.
 
         Quadrilaterals beside become triangles, triangles vanish.
         """
@@ -166,10 +167,10 @@ class Cells:
         return sides[real], owner[real]
 
     def without(self, dead: Mask, fate: Fate, bonded: tuple[str, ...] = ()) -> Cells:
-        """The section after some elements are lost, and with them what then hangs on nothing or on a single point.
+        """The section without the elements ``dead`` and without those that then are disconnected or hang on one point.
 
         An exposed side takes the name of the nearest one of the outline before; one that faces away counts as farther.
-        The names of ``bonded`` edges are not passed on: what held them holds nothing behind them.
+        The names of ``bonded`` edges are not passed on: a support does not hold the rubber behind it.
 
         Raises
         ------
@@ -207,8 +208,8 @@ class Cells:
         if areas[loose].sum() > CUT * areas.sum():
             place = self.points[self._closed()[loose]].mean(axis=(0, 1)).round(3).tolist()
             raise GeometryError(
-                f"the section is cut in two: {areas[loose].sum():.3g} of {areas.sum():.3g} mm² around {place} hang on "
-                "nothing; a higher critical stress, less load, or shallower layers keep it whole"
+                f"the section is cut in two: {areas[loose].sum():.3g} of {areas.sum():.3g} mm² around {place} are "
+                "disconnected; a higher critical stress, less load, or shallower layers keep it whole"
             )
         return loose
 

@@ -1,4 +1,4 @@
-"""A body whose mesh is a list of elements that can be lost; its surface nodes move, those inside stay."""
+"""A body whose elements can be lost; its surface nodes move with the wear, inner nodes stay."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FLATTEST = 1e-3  # of an element's corner as it was made: below, a corner counts
 
 
 class ElementBody(MeshedSection):
-    """What of a section is left, meshed with its living elements alone: lost ones bring no unknown and no energy.
+    """The remaining section, meshed with its remaining elements only: lost ones have no unknowns and no energy.
 
     The displacement of the outline since the mesh was made is the mesh's deformation;
     it ends at the first row of nodes inside.
@@ -52,12 +52,12 @@ class ElementBody(MeshedSection):
         self.deformation = ng.GridFunction(ng.VectorH1(self.mesh, order=1))
 
     def to_data(self) -> dict[str, Any]:
-        """What ``from_data`` makes the same body of, to the last bit."""
+        """Data from which ``from_data`` restores the body exactly."""
         return {"cells": self.cells, "base": self.base, "contour": self.contour}
 
     @classmethod
     def from_data(cls, data: dict[str, Any]) -> ElementBody:
-        """The body again."""
+        """Restore the body."""
         body = cls.__new__(cls)
         body.cells, body.base, body.contour = (data[name] for name in ("cells", "base", "contour"))
         body._set_up()
@@ -69,14 +69,14 @@ class ElementBody(MeshedSection):
         return self.cells.moved(self.contour.points)
 
     def boundary(self, edges: Sequence[str]) -> ng.Region:
-        """As in ``Meshed``; of edges that the section once had, those that it has lost are left out."""
+        """As in ``Meshed``; edges whose elements are all lost are left out."""
         left = tuple(name for name in edges if name in self.region_names)
         if not left:
             raise MeshError(f"nothing of the edges {list(edges)} is left: all of their elements are lost")
         return super().boundary(left)
 
     def move_to(self, contour: Outline) -> None:
-        """Let the surface nodes go to an outline that has the points of ``base``, displaced.
+        """Move the surface nodes to an outline that has the points of ``base``, displaced.
 
         Raises
         ------

@@ -1,4 +1,4 @@
-"""Harmonic fill of a field on a mesh: the part held goes on smoothly into the part left free."""
+"""Smooth continuation of a field: its free unknowns follow from the held ones by a harmonic extension."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ Array = NDArray[np.float64]
 class HarmonicFill:
     """Solve ``div grad u = 0`` (or with a given stiffness) for the free unknowns of a field.
 
-    SciPy's LU, because NGSolve's ``sparsecholesky`` rounds differently each time it is built, and a run that is
-    killed and resumed must repeat itself.
+    Uses SciPy's LU, because the rounding of NGSolve's ``sparsecholesky`` differs from call to call, and a resumed run
+    must give the same numbers.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ class HarmonicFill:
         self._lu = splu(inner, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
     def __call__(self, values: Array) -> Array:
-        """The held values, and the free ones filled in."""
+        """The held values with the free values computed."""
         filled = values.copy()
         filled[self._free] = 0.0
         filled[self._free] = -self._lu.solve((self._stiffness @ filled)[self._free])

@@ -23,13 +23,13 @@ INSIDE = "between layers and triangles"
 def layered(
     contour: Outline, edges: tuple[str, ...], *, depth: float, edge: float, coarse: float, grading: float
 ) -> Cells:
-    """Mesh a section: the named edges, in one piece, copied inwards into layers of quadrilaterals.
+    """Mesh a section with layers of quadrilaterals below the named edges, and triangles in the rest.
 
     Parameters
     ----------
     contour : Outline
     edges : tuple of str
-        Edges that wear; seen along the line from their first to their last point they must not overhang.
+        Edges that wear, one connected piece; they must not overhang the line from their first to their last point.
     depth : float
         Thickness of all layers [mm].
     edge : float
@@ -139,7 +139,7 @@ def _rest(
 
 
 def _beside(points: Array, names: list[str], side: Array, same: float) -> tuple[int, str]:
-    """How many of the outline's first points lie on the layers' side, and its edge's name there; 0 if it leaves it."""
+    """Number of the outline's first points on the layers' side, and the edge's name there; 0 if there are none."""
     depth = float(np.linalg.norm(side[-1] - side[0]))
     inward = (side[-1] - side[0]) / depth
     off = points - side[0]

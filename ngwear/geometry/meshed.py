@@ -1,4 +1,4 @@
-"""What a meshed part offers to the effects, whatever its dimension."""
+"""Base class of meshed parts, sections and solids."""
 
 from __future__ import annotations
 

@@ -66,15 +66,15 @@ class MeshedSection(Meshed):
 
     @abc.abstractmethod
     def move_to(self, contour: Outline) -> None:
-        """Let the mesh follow to an outline that has the points of ``base``, displaced.
+        """Move the mesh to an outline that has the points of ``base``, displaced.
 
         Raises
         ------
         MeshError
-            If an element would fold or be distorted beyond use; the body is left as it was.
+            If an element would be inverted or too distorted; the body then stays as it was.
         """
 
     @property
     def now(self) -> Cells | None:
-        """The elements where they are now, of a section that may lose some."""
+        """The elements at their present places, if the section can lose elements; else None."""
         return None

@@ -68,7 +68,7 @@ def join(nodal: Array, edges: NDArray[np.intp], quads: NDArray[np.intp] = NO_QUA
 
 
 def _centres(nodal: Array, quads: NDArray[np.intp]) -> Array:
-    """What a quadrilateral's corners and edges alone make at its centre."""
+    """Value at a quadrilateral's centre from its corners and edges alone."""
     return nodal[quads[:, 4:]].sum(axis=1) / 2 - nodal[quads[:, :4]].sum(axis=1) / 4
 
 

@@ -36,7 +36,7 @@ def polygon_moment(points: Array) -> float:
 
 @dataclass(frozen=True)
 class Outline:
-    """A closed, counter-clockwise outline; its polygon is the truth for area and worn area.
+    """A closed, counter-clockwise outline; area and worn area are those of its polygon.
 
     Segment i runs from point i to point i + 1 (the last one closes the outline). A *contour
     parameter* t is a float index: t = 3.5 lies in the middle of segment 3 on the spline.
@@ -158,7 +158,7 @@ class Outline:
         return tuple(dict.fromkeys(self.names))
 
     def widths(self, edges: tuple[str, ...] | None = None) -> Array:
-        """Half the lengths of both segments at each point [mm], of those of named edges only; 1 off them."""
+        """Half the sum of both segments' lengths at each point [mm], counting named edges only; 1 outside them."""
         half = 0.5 * self.lengths * (1.0 if edges is None else self.on(edges))
         width = half + np.roll(half, 1)
         return np.where(width > 0, width, 1.0)

@@ -18,7 +18,7 @@ CORNER_ANGLE = np.radians(30.0)  # a file that marks no corners gets one where t
 
 
 class Drawing(NamedTuple):
-    """What a file says of an outline: the arguments of ``Outline``."""
+    """Contents of an outline file: the arguments of ``Outline``."""
 
     points: NDArray[np.float64]
     names: tuple[str, ...]
@@ -27,7 +27,7 @@ class Drawing(NamedTuple):
 
 
 def read_drawing(path: Path) -> Drawing:
-    """Read an outline by the file's ending: ``.toml``, ``.csv``, ``.step`` or ``.stp``.
+    """Read an outline file, ``.toml``, ``.csv``, ``.step`` or ``.stp``.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def read_drawing(path: Path) -> Drawing:
 
 
 def write_drawing(drawing: Drawing, path: Path) -> None:
-    """Write an outline as TOML, every digit of it: an edge begins with each name, and at each corner.
+    """Write an outline as TOML with all digits; a new ``[[edge]]`` starts at each change of name and each corner.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Move a worn outline inwards so that its polygon loses exactly the worn area; heal it if it crosses itself."""
+"""Move a worn outline inwards so that its polygon loses exactly the worn area; repair it if it crosses itself."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def recede(contour: Outline, area: Array, worn_edges: tuple[str, ...]) -> Outlin
     Returns
     -------
     Outline
-        With the same points displaced, or with other points if it had to be healed.
+        With the same points displaced, or with other points if it had to be repaired.
 
     Raises
     ------
@@ -58,7 +58,7 @@ def recede(contour: Outline, area: Array, worn_edges: tuple[str, ...]) -> Outlin
 
 
 def receded(contour: Outline, area: Array, worn_edges: tuple[str, ...], columns: Array | None = None) -> Array:
-    """The outline's points after that, whether or not it then crosses itself; shape (n, 2) [mm].
+    """The outline's points after ``recede``, without repair, shape (n, 2) [mm].
 
     ``columns`` are unit vectors along which points shall move instead of their normals, shape (n, 2); zero for none.
     """
@@ -108,14 +108,15 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 def healed(before: Outline, after: Array) -> Outline:
-    """Rebuild a crossing outline: the section minus what the outline has swept, opened, its largest piece.
+    """Repair an outline that crosses itself: largest piece of the section without the swept area, opened by
+    ``OPENING``.
 
     Points take edge names and corners from the nearest point of the receded outline.
 
     Raises
     ------
     GeometryError
-        If an edge has vanished or the section has fallen apart.
+        If an edge is worn away completely or the section is cut in two.
     """
     from shapely import MultiPoint, Polygon, union_all
     from shapely.geometry import MultiPolygon
@@ -142,7 +143,7 @@ def healed(before: Outline, after: Array) -> Outline:
 
 
 def refuse_worn_through(contour: Outline) -> None:
-    """GeometryError if a section is nowhere thicker than what healing would take off, or falls apart by it."""
+    """Raise GeometryError if a section is nowhere thicker than ``2 OPENING``, or is cut in two by the opening."""
     from shapely import Polygon
 
     left = Polygon(contour.points).buffer(-OPENING)
@@ -213,7 +214,7 @@ def tidied(contour: Outline, field: SizeField) -> Outline:
 
 
 def _beside_fixed(contour: Outline, fixed: NDArray[np.bool_], h: Array) -> NDArray[np.bool_]:
-    """Points so close to a fixed one that they can go, on a straight piece: a worn corner that slides uses them up."""
+    """Points on a straight piece so close to a fixed point (a sliding worn corner) that they are dropped."""
     short = contour.lengths < 0.4 * np.minimum(h, np.median(contour.lengths))
     chord = np.roll(contour.points, -1, axis=0) - np.roll(contour.points, 1, axis=0)
     off = np.abs(_cross(contour.points - np.roll(contour.points, 1, axis=0), chord))  # twice the area that goes

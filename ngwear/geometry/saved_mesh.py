@@ -1,4 +1,4 @@
-"""A curved mesh of a section as arrays, and the same one again from them: numbers, curves and all, to the last bit."""
+"""Convert a curved mesh of a section to arrays, and back to exactly the same mesh."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Index = NDArray[np.intp]
 
 
 def as_arrays(mesh: ng.Mesh) -> dict[str, NDArray[np.float64] | Index]:
-    """What ``from_arrays`` needs besides the outline and its nodes.
+    """Arrays that ``from_arrays`` needs besides the outline and its nodes.
 
     Returns
     -------
@@ -30,9 +30,9 @@ def as_arrays(mesh: ng.Mesh) -> dict[str, NDArray[np.float64] | Index]:
 
 
 def from_arrays(contour: Outline, nodes: Index, arrays: dict[str, NDArray[np.float64] | Index]) -> ng.Mesh:
-    """The mesh that ``section.mesh`` has made of an outline and its nodes.
+    """Restore the mesh that ``section.mesh`` has made of an outline and its nodes.
 
-    Its curves are those of the same splines: only the mesher is not asked again.
+    Curved edges follow the same splines; the mesh generator is not called.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""From the outline to OCC's named splines and to a curved mesh that has passed its gates."""
+"""Build named OCC splines from an outline, and a curved mesh that passes the checks of ``check``."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def face(contour: Outline, nodes: NDArray[np.intp]) -> occ.Face:
 
 
 def geometry(section: occ.Face) -> occ.OCCGeometry:
-    """What the mesher takes, and what curves a mesh."""
+    """Geometry for the mesh generator and for curved elements."""
     section.name = MATERIAL
     return occ.OCCGeometry(section, dim=2)
 
@@ -57,7 +57,7 @@ def mesh(contour: Outline, nodes: NDArray[np.intp], field: SizeField) -> ng.Mesh
     Raises
     ------
     MeshError
-        If area, edge names, smallest angle or Jacobian do not pass their gates.
+        If area, edge names, smallest angle or Jacobian do not pass their checks.
     """
     section = face(contour, nodes)
     shape = geometry(section)
@@ -72,9 +72,9 @@ def mesh(contour: Outline, nodes: NDArray[np.intp], field: SizeField) -> ng.Mesh
 
 
 def check(mesh: ng.Mesh, *, area: float, names: set[str]) -> None:
-    """Pass a mesh through the gates: area, names, smallest angle, positive Jacobian.
+    """Check a mesh: area, names, smallest angle, positive Jacobian.
 
-    ``area`` is that of the geometry [mm²]. Raises MeshError naming the gate, the value and the place.
+    ``area`` is that of the geometry [mm²]. Raises MeshError with the check, the value and the place.
     """
     found = ng.Integrate(1, mesh)
     if not abs(found - area) <= 1e-4 * area:  # what curved edges may cut off; a lost element is more
@@ -88,7 +88,7 @@ def check(mesh: ng.Mesh, *, area: float, names: set[str]) -> None:
     jacobian = ng.Det(ng.specialcf.JacobianMatrix(2))
     lowest = np.min(jacobian(mesh.MapToAllElements(ng.IntegrationRule(ng.TRIG, 3), ng.VOL)))
     if not lowest > 0:
-        raise MeshError("a curved element is folded (Jacobian not positive)")
+        raise MeshError("a curved element is inverted (Jacobian not positive)")
 
 
 def smallest_angle(mesh: ng.Mesh) -> tuple[float, Array]:

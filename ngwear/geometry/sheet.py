@@ -1,4 +1,4 @@
-"""A sheet under a pin that runs along a circle or a straight line: a block of the sheet that moves with the pin."""
+"""A sheet under a pin that moves along a circle or a straight line: the part of the sheet around the pin."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Sheet(Meshed):
 
     The track runs through the origin along +x, counter-clockwise about (0, track radius); z is the height, the faces
     are ``bottom`` (z = 0), ``top`` and ``side``. The half behind the pin mirrors the half ahead, elements
-    too: of a pin that stands still no mesh can then make a force along the track.
+    too: so that a pin at rest has exactly no force along the track.
 
     Parameters
     ----------
@@ -32,11 +32,11 @@ class Sheet(Meshed):
     track_radius : float
         [mm]; infinite for a straight track.
     reach, beside : float
-        How far the sector reaches from the pin, along the track to both sides and across it [mm].
+        Distance from the pin to the sector's ends along the track, and to its sides across it [mm].
     seeds : array, shape (k, 3)
-        Places that ask for small elements.
+        Places with small elements.
     sizes : array, shape (k,)
-        Element edge asked for there [mm].
+        Element edge there [mm].
     coarse : float
         Element edge far away [mm].
     grading : float
@@ -47,7 +47,7 @@ class Sheet(Meshed):
     SceneError
         If the sector reaches over the track's centre or around it.
     MeshError
-        If the mesh does not pass its gates.
+        If the mesh does not pass its checks.
     """
 
     def __init__(
@@ -109,7 +109,7 @@ class Sheet(Meshed):
         return solid
 
     def _check(self) -> None:
-        """Pass the mesh through the gates: volume (the outer arcs are chords in it) and the shape of the elements."""
+        """Check the mesh: its volume (the outer arcs are chords in it) and the shape of the elements."""
         exact = 4 * self.beside * self.reach * self.thickness
         found = ng.Integrate(1, self.mesh)
         if not abs(found - exact) <= 0.05 * exact:  # more than chords of coarse arcs cut off

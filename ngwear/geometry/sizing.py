@@ -1,4 +1,4 @@
-"""How fine the mesh shall be: fine where the contact asks for it, growing with the distance from there."""
+"""Element sizes: small in the contact, growing with the distance from there."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ class SizeField:
     Parameters
     ----------
     seeds : array, shape (k, 2)
-        Places that ask for small elements; may be empty.
+        Places with small elements; may be empty.
     sizes : array, shape (k,)
-        Element edge asked for there [mm].
+        Element edge there [mm].
     coarse : float
         Element edge far away [mm].
     grading : float
@@ -76,7 +76,7 @@ def fitted(contour: Outline, field: SizeField, *, on_chord: bool = False) -> Out
 def smoothed(contour: Outline, edges: tuple[str, ...], longest: float) -> Outline:
     """Return the outline with points inserted on the spline where the named edges are curved.
 
-    After that no curved segment there is longer than ``longest`` [mm]: what wears must not be refined later,
+    After that no curved segment there is longer than ``longest`` [mm]: an edge that wears must not be refined later,
     because a point put on the spline of a curved segment changes the polygon's area.
     """
     return _halved(contour, edges, longest, curved=True)

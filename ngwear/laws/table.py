@@ -32,7 +32,7 @@ def check_table(place: str, name: str, distance: Sequence[float], values: Sequen
             raise SceneError(f"{place}.distance[{i}]", s, "a sliding distance must be at least 0 mm, and finite")
         if i > 0 and not s > distance[i - 1]:
             raise SceneError(
-                f"{place}.distance[{i}]", s, f"must be above the row before, {distance[i - 1]:g} mm: sort them"
+                f"{place}.distance[{i}]", s, f"must rise: the row before has {distance[i - 1]:g} mm; sort the rows"
             )
     for i, value in enumerate(values):
         if not 0 <= value < math.inf:

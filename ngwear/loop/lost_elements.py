@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.equilibrium.lost_elements_transfer import keep
+from ngwear.equilibrium.lost_elements_transfer import transfer_to_remaining
 from ngwear.errors import GeometryError, MeshError, SceneError, require
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.element_body import ElementBody, elements
@@ -206,7 +206,7 @@ def rebuild_stage(state: State, cells: Cells) -> None:
         stage = Stage(old.scene, ElementBody(cells))
     except MeshError as error:
         raise GeometryError(f"the remaining section has no support or no load: {error}") from None
-    replace_stage(state, stage, keep(old.problem, [p.vector for p in state.phases], stage.problem))
+    replace_stage(state, stage, transfer_to_remaining(old.problem, [p.vector for p in state.phases], stage.problem))
 
 
 def move_surface(state: State, outline: Outline, points: Array) -> None:

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.state_transfer import carry
+from ngwear.equilibrium.state_transfer import transfer
 from ngwear.errors import MeshError
 from ngwear.geometry.body import Body
 from ngwear.geometry.outline import Outline
@@ -76,7 +76,7 @@ def remesh(state: State, contour: Outline | None = None) -> None:
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
     stage = Stage(old.scene, body, state.background)
-    replace_stage(state, stage, carry(old.problem, phases, stage.problem))
+    replace_stage(state, stage, transfer(old.problem, phases, stage.problem))
     state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
     state.ledger.remeshes += 1
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import re
 import time
 from collections.abc import Callable
 from copy import copy
@@ -20,6 +21,8 @@ from ngwear.results.recorder import Folder, Recorder
 from ngwear.scene.scene import Scene
 
 log = logging.getLogger(__name__)
+
+NO_NAME = re.compile(r'[<>:"/\\|?*\x00-\x1f]')  # what file names cannot hold on one platform or another
 
 
 class Drawing(Protocol):
@@ -194,7 +197,7 @@ def _write_vtk(path: Path, state: State) -> None:
             stage.body.mesh,
             coefs=[fields[DISPLACEMENT], fields[VOLUMETRIC_STRESS]],
             names=[DISPLACEMENT, VOLUMETRIC_STRESS.replace(" ", "_")],
-            filename=str(path / f"stroke_{state.strokes}_{stroke.name}"),
+            filename=str(path / f"stroke_{state.strokes}_{NO_NAME.sub('_', stroke.name)}"),
             subdivision=1,
         )
         try:

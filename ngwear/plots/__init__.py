@@ -1,1 +1,1 @@
-"""Pictures; nothing here computes."""
+"""Figures of results."""

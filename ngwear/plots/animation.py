@@ -1,4 +1,4 @@
-"""The outline of a run as it wears, over the pressure that wears it, as a moving picture."""
+"""Animation of a run: worn outline and contact pressure."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ class _Stage:
         self.load.legend(loc="upper right")
         self.draw(shown[-1])
         self.figure.canvas.draw()
-        self.figure.set_layout_engine("none")  # else the panels would tremble with the length of the labels
+        self.figure.set_layout_engine("none")  # else the panels would move with the length of the labels
 
     def draw(self, snapshot: Snapshot) -> None:
         """Show one stroke, and the latest pressures of the other directions."""

@@ -1,4 +1,4 @@
-"""Figure of the book of lost material: area and elements by cause over the sliding distance."""
+"""Figure of the material balance: lost area and elements by cause over the sliding distance."""
 
 from __future__ import annotations
 
@@ -13,18 +13,18 @@ if TYPE_CHECKING:
 
 IN_ALL = "area lost in all [mm^2]"
 CAUSES = {"wear": "#9db7cc", "tearing": "#222222", "distortion": "#d98324", "coming loose": "#7f5fa8"}
-AREAS = CAUSES | {"merging": "#5e8c61"}  # walls of pits whose ends wear has made one: a little either way
+AREAS = CAUSES | {"merging": "#5e8c61"}  # merged nodes at the walls of pits: small, of either sign
 
 ELEMENTS = [0, 2, 5, *(digit * 10**power for power in range(1, 7) for digit in (1, 2, 5))]  # marked on the axis
 
 
 def has_book(result: ResultFile) -> bool:
-    """Whether a run has booked what it has lost by cause."""
+    """Whether a run has recorded its lost area by cause."""
     return IN_ALL in result.series
 
 
 def book_figure(result: ResultFile) -> Figure:
-    """Area lost by each cause, one upon the other, by each but wear alone, and the number of elements lost."""
+    """Lost area by cause, stacked; the same without wear; and the number of lost elements."""
     from matplotlib.ticker import FixedLocator
 
     series = result.series

@@ -76,7 +76,7 @@ def comparison_figure(first: ResultFile, second: ResultFile) -> Figure:
 
 
 def _first_worn(snapshots: list[Snapshot]) -> Snapshot:
-    """The first stroke that wears: the states before it are solved without sliding's memory."""
+    """The first stroke that wears; the states before it are solved without the history of sliding."""
     return next((s for s in snapshots if s.stroke > 0), snapshots[0])
 
 

@@ -46,7 +46,7 @@ def coordinate(name: str, surface: RigidSurface | None, contact: SectionContact)
 def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: Labelled) -> None:
     """Draw the pressure along one contact in some states, by their labels, where it is in contact."""
     low, high, top = [], [], 0.0
-    lines = [(2.2, 0.55)] * (len(states) - 1) + [(1.2, 1.0)]  # what has not changed shows both
+    lines = [(2.2, 0.55)] * (len(states) - 1) + [(1.2, 1.0)]  # so that both lines are visible where they agree
     for (label, section), colour, (width, alpha) in zip(states.items(), COLOURS, lines, strict=False):
         contact = section.contacts[name]
         along, title = coordinate(name, surface, contact)

@@ -1,4 +1,4 @@
-"""Figure of counter-surfaces that wear: what has been worn off them, in their own coordinate."""
+"""Figure of worn counter-surfaces: worn depth over their own coordinate."""
 
 from __future__ import annotations
 

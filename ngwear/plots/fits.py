@@ -1,4 +1,4 @@
-"""Pictures of calibrations: the fit over the data, and its error."""
+"""Figures of calibrations: fit and data, and the relative error."""
 
 from __future__ import annotations
 

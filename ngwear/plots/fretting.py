@@ -1,4 +1,4 @@
-"""Pictures of two bodies that wear each other."""
+"""Figures of two bodies that wear each other."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Pictures of the laws of friction and wear: what a run has used, and a fit over its data."""
+"""Figures of the laws of friction and wear: values used in a run, and a fit with its data."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ QUANTITIES = ("friction coefficient [-]", "specific wear rate [mm^2/N]")
 
 
 def has_laws(result: ResultFile) -> bool:
-    """Whether friction or wear of a run follows a law that is no constant."""
+    """Whether friction or wear of a run follows a law that is not constant."""
     return any(column.endswith(QUANTITIES) for column in result.series)
 
 
 def law_figure(result: ResultFile) -> Figure:
-    """Friction coefficient and wear rate over the sliding distance, each over the strokes that a solve stands for."""
+    """Friction coefficient and wear rate over the sliding distance, each over the strokes that a solve represents."""
     series = result.series
     shown = [q for q in QUANTITIES if any(column.endswith(q) for column in series)]
     figure, axes = new_figure(len(shown), (1.0,) * len(shown), size=(8, 1 + 3 * len(shown)))

@@ -1,4 +1,4 @@
-"""A run's first picture: the loaded section between its rigid surfaces, filled by a field; pressures along contacts."""
+"""Figure of the loaded section between its rigid surfaces, filled by a field, and of the contact pressures."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 SECTION = "section.png"
-CLIPPED = 0.99  # share of the values within the colours: a sharp corner's stress has no bound
+CLIPPED = 0.99  # share of the values within the colour scale: the stress at a sharp corner is unbounded
 COLOUR_MAP = "viridis"
 FLUID, WET = "#cfe3f5", "#2a7fd0"
 FONT = 10.0  # points
@@ -86,7 +86,7 @@ def _when(snapshot: Snapshot) -> str:
 
 @dataclass(frozen=True)
 class _Layout:
-    """Where the panels stand, in inches from the figure's lower left corner, and the window of the section."""
+    """Positions of the panels in inches from the figure's lower left corner, and the window of the section."""
 
     size: tuple[float, float]
     section: tuple[float, float, float, float]
@@ -134,8 +134,8 @@ class _Picture:
             self._name_pressures(figure, layout, panels)
         pressure = self.section.fluid_pressure
         stroke = self.shown.kind if len({s.kind for s in self.kept.snapshots}) > 1 else ""
-        told = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
-        title = f"{self.kept.scene}: {', '.join(filter(None, told))}"
+        words = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
+        title = f"{self.kept.scene}: {', '.join(filter(None, words))}"
         figure.text(left / layout.size[0], 1 - 0.12 / layout.size[1], title, va="top", fontsize=FONT + 2)
         return figure
 
@@ -186,7 +186,7 @@ class _Picture:
         return filled
 
     def _fill(self, axes: Axes, field: str) -> Any:
-        """The section filled by a field, its colours clipped at what few values surpass."""
+        """The section filled by a field; colours are clipped at a value that few values exceed."""
         from matplotlib.colors import Normalize
 
         values = self.section.field(field)

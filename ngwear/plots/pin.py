@@ -1,4 +1,4 @@
-"""Pictures of a pin on a plate, from the file of a run."""
+"""Figures of a pin on a plate, from the file of a run."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class SheetPicture:
 
 @dataclass(frozen=True)
 class PinFile:
-    """What a run has left: columns as in ``series.csv`` in the order of speed, the sheet at each, stated errors."""
+    """Contents of a run's file: columns as in ``series.csv`` by speed, the sheet at each speed, stated errors."""
 
     thickness: float
     series: dict[str, Array]
@@ -137,7 +137,7 @@ def friction_figure(result: PinFile) -> Figure:
 
 
 def _band(axis: Axes, result: PinFile, column: str, error: str, colour: str) -> None:
-    """A relative error about a column; none that a run has not stated."""
+    """Band of a relative error about a column, if the run has stated it."""
     values, off = result.series[column], result.errors.get(error, 0.0)
     speeds = result.series["speed [mm/s]"]
     axis.fill_between(speeds, (1 - off) * values, (1 + off) * values, color=colour, alpha=0.2, lw=0)

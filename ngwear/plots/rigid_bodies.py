@@ -1,4 +1,4 @@
-"""Rigid surfaces as bodies in a picture of a section: where they stand, how far they are worn, and their names."""
+"""Rigid surfaces in a figure of a section: their places, worn depths and names."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ AROUND = 720  # points around a disc
 
 
 def body(surface: RigidSurface, contact: SectionContact, profile: Profile, window: Box) -> Any:
-    """What of a rigid body is in view, a Shapely geometry; empty for a surface of a kind that has no picture."""
+    """Visible part of a rigid body as a Shapely geometry; empty for surfaces that cannot be drawn."""
     from shapely import Polygon, box
 
     def depth(along: Array) -> Array:
-        """Worn off the surface, at places along it in the scene's frame [mm]."""
+        """Worn depth of the surface at places along it in the scene's frame [mm]."""
         if DEPTH not in profile:
             return np.zeros_like(along)
         along, length = along + contact.turned, surface.length

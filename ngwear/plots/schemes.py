@@ -11,14 +11,14 @@ from ngwear.results.result_file import read_result
 
 
 def draw_schemes(runs: Mapping[str, Mapping[str, Path]], strokes: int, file: Path) -> None:
-    """Draw pressure and worn outline at the end of each run, however early it came.
+    """Draw pressure and worn outline at the end of each run, also if it stopped early.
 
     Parameters
     ----------
     runs : mapping of str to mapping of str to Path
         Folders of runs by mesh (a line), by scheme (a column).
     strokes : int
-        Of the whole program: a run with less says so.
+        Of the whole program; a run with fewer strokes is labelled.
     file : Path
         The picture, PNG.
 

@@ -1,4 +1,4 @@
-"""What the figures of a section of elements share: polygons, windows, and how a kept stroke is called."""
+"""Shared by the figures of a section of elements: polygons, windows, and titles of saved strokes."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def living(snapshot: Snapshot, *, deformed: bool = False) -> tuple[list[Array], 
 
 
 def lost(first: Snapshot, now: Snapshot, fate: Fate) -> list[Array]:
-    """Polygons of the elements that have met with a fate, each as it was when new: its points may have worn since."""
+    """Polygons of the elements with a state, each as it was when new: its points may have worn since."""
     return polygons(first.elements["points [mm]"], first.elements["corners"][now.elements["fate"] == fate])
 
 

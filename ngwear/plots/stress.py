@@ -44,7 +44,7 @@ def stress_figure(result: ResultFile) -> Figure:
     seen = np.vstack([shape for shapes, _, inside in fields for shape, i in zip(shapes, inside, strict=True) if i])
     low, high = np.maximum(low, seen.min(axis=0) - ROD * room), np.minimum(high, seen.max(axis=0) + ROD * room)
     critical = critical_stress(result)
-    # Rubber tears where it is pulled: the colours tell pulls apart, however much it is squeezed elsewhere.
+    # Rubber tears under tension: the colour scale resolves tension, however large compression is elsewhere.
     largest = max(float(np.nanmax(stress[inside], initial=LEAST)) for _, stress, inside in fields)
     marked = critical if critical is not None and critical < NEAR * largest else None
     largest = largest if marked is None else max(largest, 1.05 * marked)

@@ -100,7 +100,7 @@ def _shades(n: int) -> list[tuple[float, float, float, float]]:
 
 
 def ridge_figure(result: ResultFile) -> Figure:
-    """One ridge at each kept stroke: which elements are left, and what has become of the others."""
+    """One ridge at each saved stroke: remaining elements, and the others by cause of loss."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

@@ -40,7 +40,7 @@ def plot(folder: Path | str, *, share: tuple[int, int] = (0, 1)) -> list[Path]:
     ----------
     folder : path
     share : (k, n)
-        Draw what falls to the k-th of n processes that draw at the same time; the section falls to the first, 0.
+        Draw only the share of the k-th of n processes that draw at the same time; the section is drawn by process 0.
 
     Raises
     ------
@@ -206,7 +206,7 @@ def _highest(snapshot: Snapshot) -> tuple[float, float]:
 def history_figure(result: ResultFile) -> Figure:
     """Depth, peak pressure, contact width and leak pressure over strokes, in bands of the errors that the run states.
 
-    A run with a companion knows the errors at its end, relative: they are drawn as such all along.
+    A run with coarser runs states relative errors for its end; they are drawn for all strokes.
     """
     series, kinds = result.series, result.kinds
     stroke = series["stroke [-]"]

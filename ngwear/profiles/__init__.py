@@ -1,1 +1,1 @@
-"""Profiles measured on a worn part beside those that a run has computed."""
+"""Comparison of measured profiles of a worn part with a run."""

@@ -1,4 +1,4 @@
-"""Lay a measured profile over a worn edge: shift, tilt and sliding distance in one robust least-squares fit."""
+"""Align a measured profile with a worn edge: shift, tilt and sliding distance by one robust least-squares fit."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Placement:
 
 @dataclass(frozen=True)
 class Alignment:
-    """A profile laid over an edge.
+    """A profile aligned with an edge.
 
     Attributes
     ----------
@@ -61,13 +61,13 @@ class Alignment:
     place, height : array, shape (k,)
         The profile's points that lie over the edge, places rising [mm].
     distance : float
-        Sliding distance of the run whose outline meets the profile best [mm]; beyond the run's end a guess.
+        Sliding distance of the run whose outline fits the profile best [mm]; beyond the run's end an extrapolation.
     error : float
         Standard error of the distance [mm].
     misfit : float
-        Root mean square of what is left, over that of the profile about its own straight line [-].
+        Root mean square of the residuals, over that of the profile about its own straight line [-].
     outliers : int
-        Points left further from the outline than eight times the noise.
+        Points whose distance from the outline is more than eight times the noise.
     """
 
     placement: Placement
@@ -82,22 +82,22 @@ class Alignment:
 def align(profile: Profile, edge: WornEdge) -> Alignment:
     """Fit shift, tilt and sliding distance together, each deviation weighted less the more it exceeds the noise.
 
-    Fitted one after the other, wear would be taken for tilt. The residual is the vertical distance of each placed point
+    A separate fit would take wear for tilt. The residual is the vertical distance of each placed point
     from the outline at the sliding distance d,
 
         r_i = z_i' - h(x_i', d),   (x', z') = R(tilt) (x, z) + shift,
 
-    under the loss ``2 (sqrt(1 + r²/n²) - 1)`` with n the residuals' median deviation, so that dust and places that wear
-    unlike the run pull little. All shifts that leave 60 % of the profile over the edge are tried first. The tilt is at
-    most 15 degrees.
+    under the loss ``2 (sqrt(1 + r²/n²) - 1)`` with n the residuals' median deviation, so that dust and places with
+    another wear than in the run have little influence. All shifts that leave 60 % of the profile over the edge are
+    tried first. The tilt is at most 15 degrees.
 
     The error of d comes from the curvature of the squares at the best fit, with the residuals' variance times their
-    correlation length in points: a profile sampled twice as densely says little more.
+    correlation length in points: a profile sampled twice as densely contains little more information.
 
     Raises
     ------
     SceneError
-        If no shift lays the profile over the edge.
+        If the profile does not overlap the edge at any shift.
     """
     p, span = _coarse(profile, edge)
     centre = (float(profile.x.mean()), float(profile.z.mean()))
@@ -174,7 +174,7 @@ def _coarse(profile: Profile, edge: WornEdge) -> tuple[Array, tuple[float, float
 
 
 def _error(jacobian: Array, left: Array) -> float:
-    """Standard error of the last parameter, infinite where the data say nothing about it."""
+    """Standard error of the last parameter, infinite if the data do not determine it."""
     curvature = jacobian.T @ jacobian
     size = np.sqrt(np.diag(curvature))
     if not size.all() or np.linalg.cond(curvature / np.outer(size, size)) > 1e12:

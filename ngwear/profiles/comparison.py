@@ -29,16 +29,16 @@ LARGE_TILT, LARGE_SHIFT = np.radians(3.0), 0.1  # the shift as a share of the pr
 
 @dataclass(frozen=True)
 class Comparison:
-    """A profile laid over a run's worn edge.
+    """A profile aligned with a run's worn edge.
 
     Attributes
     ----------
     edge : WornEdge
     alignment : Alignment
     distance : float
-        Sliding distance that the measured part has done [mm].
+        Sliding distance of the measured part [mm].
     notes : tuple of str
-        What to be wary of.
+        Warnings in sentences.
     """
 
     edge: WornEdge
@@ -76,7 +76,7 @@ class Comparison:
         return float(trapezoid(depth, self.alignment.place))
 
     def as_dict(self) -> dict[str, Any]:
-        """All numbers, as in ``measured.json``; a best fit beyond the run's end rests on a guess, and gives no rate."""
+        """All numbers, as in ``measured.json``; a best fit beyond the run's end gives no rate."""
         edge, found = self.edge, self.alignment
         place, motion = found.place, found.placement
         out: dict[str, Any] = {
@@ -139,7 +139,7 @@ def compare_profile(
     upside_down: bool = False,
     mirrored: bool = False,
 ) -> Comparison:
-    """Read a profile, lay it over a run's worn edge and fit the specific wear rate.
+    """Read a profile, align it with a run's worn edge and fit the specific wear rate.
 
     Under Archard's law with a constant k an outline depends on k and the sliding distance d through their product
     alone: both enter the problem as ``k p dd`` and nowhere else, so a run with f times the rate passes through the same
@@ -148,8 +148,8 @@ def compare_profile(
 
     It does not hold when something besides k p dd depends on the distance or on time: friction or a rate that changes
     with the distance, or rubber with memory before it has settled (a note says so). The standard error is the profile's
-    alone; what the run estimates of its own error (``summary.json``) comes on top. Where nothing unworn is measured,
-    wear and a shift of height cannot be told apart, and the standard error shows it.
+    alone; the error of the run (``summary.json``) must be added. If the profile contains no unworn part, wear and a
+    shift of height cannot be distinguished, and the standard error is large.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def compare_profile(
     edges : sequence of str
         As in ``read_worn_edge``.
     strokes, distance : float or None
-        How much the measured part has slid: strokes, or distance [mm]; by default as much as the run.
+        Sliding of the measured part: strokes, or distance [mm]; by default the run's.
     upside_down, mirrored : bool
         Reverse the profile's heights or its direction first.
 
@@ -187,7 +187,7 @@ def compare_profile(
 def _require_orientation(
     profile: Profile, edge: WornEdge, found: Alignment, path: str, flags: tuple[bool, bool]
 ) -> None:
-    """Raise if the profile turned over, reversed, or in another unit fits far better."""
+    """Raise if the profile upside down, mirrored, or in another unit fits far better."""
     heights = max(float(np.ptp(h - np.polynomial.Polynomial.fit(edge.place, h, 1)(edge.place))) for h in edge.heights)
     line = np.polynomial.Polynomial.fit(profile.x, profile.z, 1)
     ratio = float(np.ptp(profile.z - line(profile.x))) / heights
@@ -205,7 +205,7 @@ def _require_orientation(
     if scale != 1:
         change = "divided" if scale < 1 else "multiplied"
         remedy = (
-            f"so many mm do heights span about their line, the run's {heights:.4g} mm, and {change} by 1000 they fit: "
+            f"the heights span so much about their line, the run's {heights:.4g} mm, and {change} by 1000 they fit: "
         )
         remedy += guess_unit(ratio) + ("; or, if mm is right, the run is far too short" if scale < 1 else "")
         raise SceneError(f"{path}, z", ratio * heights, remedy)
@@ -254,7 +254,7 @@ def _notes(profile: Profile, edge: WornEdge, found: Alignment, slid: float) -> l
             f"or with a specific wear rate {1.2 * found.distance / edge.end:.2g} times as large, and compare again"
         )
     if edge.has_memory:
-        notes.append("the rubber has_memory: its outlines depend on time, too, and the wear rate is approximate")
+        notes.append("the rubber is viscoelastic: its outlines depend on time too, and the wear rate is approximate")
     if edge.laws_vary:
         notes.append("friction or wear follow the sliding distance: the wear rate, a mean over the run, is approximate")
     return notes

@@ -1,4 +1,4 @@
-"""Law of wear whose depth, gathered from a run's pressures, fits one measured profile best."""
+"""Fit a law of wear to one measured profile, with the depth integrated from a run's pressures."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ngwear.results.result_file import ResultFile, read_result
 
 Array = NDArray[np.float64]
 AXES = {"x": 0, "y": 1}
-# Each family: the law of one number and a scale of the pressure [MPa], and the numbers that are tried.
+# Each family: the law by one parameter and a scale of the pressure [MPa], and the parameter's values tried.
 FAMILIES: dict[str, tuple[Callable[[float, float], WearLaw], Array]] = {
     "power": (lambda m, p: PowerWear(exponent=m, reference_pressure=p), np.linspace(0.2, 5.0, 25)),
     "threshold": (lambda q, p: ThresholdWear(pressure=q * p), np.linspace(0.0, 0.95, 20)),
@@ -34,13 +34,13 @@ class LawFit:
     ----------
     law : WearLaw
     specific_wear_rate : float
-        k that belongs to it [mm²/N].
+        Specific wear rate k of the law [mm²/N].
     residual : float
-        RMS of what it leaves of the profile [mm].
+        RMS of the deviation from the profile [mm].
     archard : float
         The same of Archard's law [mm].
     tried, residuals : array
-        The family's numbers that were tried and their residuals [mm]: flat, where the profile does not tell the law.
+        Parameter values tried and their residuals [mm]; they hardly differ if the profile does not determine the law.
     """
 
     law: WearLaw
@@ -52,18 +52,18 @@ class LawFit:
 
 
 def fit_wear_law(folder: Path | str, comparison: Comparison, family: str = "power") -> LawFit:
-    """Fit k and one number of a law to a profile, without another run.
+    """Fit k and one parameter of a law to a profile, without another run.
 
-    The depth is gathered as ``W = k int P phi(p) ds`` over the pressures that the run has saved, by trapezoids, up to
+    The depth is computed as ``W = k int P phi(p) ds`` over the pressures that the run has saved, by trapezoids, up to
     the distance at which the run's outline fits the profile best, or its end; k, a shift of height and a tilt by least
-    squares for each number that is tried. The scale of the pressure is the highest of the run for ``"threshold"`` and
+    squares for each value of the parameter. The scale of the pressure is the highest of the run for ``"threshold"`` and
     ``"saturating"``, the mean over the run's load for ``"power"``.
 
     An approximation: these pressures are those of the run's own law, whose wear has shaped its contact. It is good
     while the depth is small against the indentation; else run again with the law found, compare and fit until it stays
     (a roller on a sheet, worn 0.02 mm deep with the exponent 2: 1.67 from a run of Archard's law, 1.87 and 1.92 from
-    the next two). Once a contact is worn in, its profile is the counter-surface's whatever the law, and ``residuals``
-    are flat. J is left out.
+    the next two). Once a contact is worn in, its profile is the counter-surface's for any law, and ``residuals`` hardly
+    differ. J is left out.
 
     Parameters
     ----------

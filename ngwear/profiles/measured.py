@@ -30,7 +30,7 @@ class Profile:
     z : array, shape (n,)
         Height [mm], positive out of the material; its zero does not matter.
     notes : tuple of str
-        What was mended while reading.
+        Corrections made while reading.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def read_profile(path: Path | str, *, length: float | None = None) -> Profile:
     Raises
     ------
     SceneError
-        If the file is missing or no such table, names no units, or its places cannot be in the unit that it names.
+        If the file is missing or not such a table, has no units, or its places cannot be in the stated unit.
     """
     path = Path(path)
     if not path.is_file():

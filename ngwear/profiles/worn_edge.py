@@ -1,4 +1,4 @@
-"""The unloaded outline of a worn edge as a profilometer would see it, at every stroke that a run has kept."""
+"""The unloaded outline of a worn edge as a profilometer would see it, at every saved stroke of a run."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class WornEdge:
     def at(self, distance: float) -> Array:
         """Heights after a sliding distance [mm], shape (m,), by monotone cubics between the kept strokes.
 
-        Beyond the run's end the wear grows in proportion: a guess, which serves to notice that the run is too short.
+        Beyond the run's end the wear grows in proportion: an extrapolation, used to detect that the run is too short.
         """
         return np.asarray(self._over_distance(distance))
 
@@ -106,7 +106,7 @@ def read_worn_edge(folder: Path | str, *, edges: Sequence[str] = ()) -> WornEdge
     """
     result = read_result(folder)
     if not result.wear_rates or not result.snapshots or result.snapshots[-1].stroke == 0:
-        raise ResultError(f"{folder}: nothing has worn in this run, or its wear rates were not kept: run it again")
+        raise ResultError(f"{folder}: nothing has worn in this run, or its wear rates were not saved: run it again")
     on = _on(result, edges or result.worn_edges)
     direction, outward, axis = view(result.outline, on)
     ends = np.concatenate([result.outline[on], np.roll(result.outline, -1, axis=0)[on]]) @ direction

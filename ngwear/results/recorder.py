@@ -85,12 +85,12 @@ class Recorder:
 
     def add(self, state: Any, *, wall: float) -> None:
         """Add the strokes of the state's last step."""
-        if self.unworn is None:
-            plain = state.cells is None
-            self.unworn = measured_at(self.scene) if plain else state.contour
-            self.unworn_area = self.unworn.area
+        unworn: Outline | None = self.unworn
+        if unworn is None:
+            unworn = measured_at(self.scene) if state.cells is None else state.contour
+            self.unworn, self.unworn_area = unworn, unworn.area
         for report in state.reports:
-            self.rows.append(self._row(state, report, wall, self.unworn))
+            self.rows.append(self._row(state, report, wall, unworn))
             self.snapshots.append(self._snapshot(report))
 
     def _row(self, state: Any, report: Any, wall: float, unworn: Outline) -> dict[str, Any]:

@@ -1,1 +1,1 @@
-"""Sliding on rubber that remembers: friction from its memory (cases C1 and C2)."""
+"""Sliding on viscoelastic rubber: hysteresis friction (cases C1 and C2 of 10.5772/50498)."""

@@ -1,4 +1,4 @@
-"""One asperity: a rigid cylinder slides without friction over rubber that remembers (case C1)."""
+"""One asperity: a rigid cylinder slides without surface friction over viscoelastic rubber (case C1)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.steady_memory import SteadyMemory
-from ngwear.equilibrium.state_transfer import carry
+from ngwear.equilibrium.state_transfer import transfer
 from ngwear.equilibrium.steady_sliding import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import Work, relax
 from ngwear.errors import SceneError
@@ -26,7 +26,7 @@ ROUGH, COARSE = 1e-2, 4  # tolerance and fineness of the solve that only looks f
 NEAR, FAR = 0.25, 0.5  # steepest growth of the elements around the contact, and beyond
 AROUND = 8.0  # the contact: half lengths
 GRID = 0.48  # growth of the columns and rows along which the material flows, over that of the elements near by
-WIDE = 8.0  # a block that behaves like a half-plane, to 0.5 % of the friction: times the least one
+WIDE = 8.0  # times the least depth: the block behaves like a half-plane, to 0.5 % of the friction
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +76,7 @@ class Asperity:
     def wake(self, speed: float) -> float:
         """Length over which the track recovers: V tau G_0 / G_inf, tau weighted by the arms' loss [mm].
 
-        At most 100 half lengths: what recovers more slowly than that is too shallow to matter.
+        At most 100 half lengths: slower recovery has too small an amplitude to matter.
         """
         length = speed * self.loss_time(speed) * self.series.instantaneous
         return min(length, LONGEST_WAKE * self.half_length(speed))
@@ -121,7 +121,7 @@ class Slide:
     friction : float
         Horizontal over vertical force: the internal friction of the rubber alone [-].
     dissipation : float
-        What the rubber dissipates, over load and track: the same friction coefficient from energy [-].
+        Dissipation of the rubber over load and track: the same friction coefficient from energy [-].
     start, end : float
         Contact from the axis, the slider moving towards +x [mm].
     indentation : float
@@ -158,14 +158,14 @@ class Slide:
 
     @property
     def frequency(self) -> float:
-        """Exciting frequency: the contact's length is half a wave [Hz]."""
+        """Exciting frequency [Hz]: the contact's length is half a wave."""
         return self.speed / (2 * (self.end - self.start))
 
 
 def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: SteadyOptions | None = None) -> Slide:
-    """Slide steadily: once on an even, coarse mesh to find the contact's ends, once refined to them.
+    """Steady sliding: a first solve on a uniform coarse mesh finds the contact's ends, a second one is refined there.
 
-    What dissipates sits within V tau of the ends: elements of ``4 V tau / fineness`` there, with the half length l
+    Dissipation occurs within V tau of the ends: elements of ``4 V tau / fineness`` there, with the half length l
     between ``l / 40`` and ``l / 8`` over fineness, and ``l / fineness`` elsewhere in the contact. Below it they grow
     by ``2 / fineness`` of the distance, at most a quarter near the contact and a half beyond: at V tau = l / 100 a
     quarter leaves the dissipation 3 % off.
@@ -191,7 +191,7 @@ def slide(asperity: Asperity, speed: float, *, fineness: float = 12, options: St
     finest = float(np.clip(4 * speed * asperity.loss_time(speed), half / 40, half / 8)) / fineness
     near, far = np.minimum(2 / fineness, (NEAR, FAR))
     fine, memory = _block(asperity, depth, block.ends, half / fineness, finest, near, far)
-    (state,) = carry(block.problem, [block.problem.state.vec.FV().NumPy()], fine.problem)
+    (state,) = transfer(block.problem, [block.problem.state.vec.FV().NumPy()], fine.problem)
     fine.problem.state.vec.FV().NumPy()[:] = state
     memory.set_speed(speed, half)
     work.add(solve_steady(fine.problem, memory, options))

@@ -1,4 +1,4 @@
-"""The rubber block that a cylinder slides on, meshed as finely as each place of its top asks for."""
+"""The rubber block under a sliding cylinder, with given element sizes along its top."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Block:
         return float(self.problem.fields[self.contact.travel_name].vec[0])
 
     def indent(self, depth: float) -> None:
-        """Let the cylinder overlap the block [mm], as a state to start from."""
+        """Move the cylinder into the block by a depth [mm], as a start state."""
         self.problem.fields[self.contact.travel_name].vec[0] = depth
 
     @property

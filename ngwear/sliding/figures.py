@@ -1,4 +1,4 @@
-"""Pictures of sliding on rubber that remembers."""
+"""Figures of sliding on viscoelastic rubber."""
 
 from __future__ import annotations
 

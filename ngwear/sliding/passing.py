@@ -49,7 +49,7 @@ class Passage:
 
     @property
     def steady(self) -> float:
-        """Friction at the end, averaged: nodes that come into contact ripple it [-]."""
+        """Friction at the end [-], averaged over ``window``: it oscillates as nodes come into contact."""
         return self._mean(0)
 
     @property
@@ -67,8 +67,8 @@ def slide_in_time(asperity: Asperity, speed: float, *, fineness: float = 12, wak
     """Press the cylinder on in the time in which it later passes over its contact, then slide it at constant speed.
 
     The block is at rest in its own frame, so that mesh nodes pass through the contact. The track is as long as
-    ``wakes`` of ``Asperity.wake``, and is fine where it shall tell the friction, at its end: elements and steps of
-    ``1 / fineness`` of the half length, or of ``4 V tau / fineness`` around the ends of the contact if that is less.
+    ``wakes`` of ``Asperity.wake``, and the mesh is fine at its end, where the friction is evaluated: elements and steps
+    of ``1 / fineness`` of the half length, or of ``4 V tau / fineness`` around the ends of the contact if that is less.
 
     Raises
     ------
@@ -86,12 +86,12 @@ def slide_in_time(asperity: Asperity, speed: float, *, fineness: float = 12, wak
     window = max(4 * finest, min(half, relaxation))
     track = wakes * asperity.wake(speed) + half / 4 + window
     if finest < half / fineness:
-        told = [np.array([e - window - 0.15 * half, e + 0.15 * half]) + track for e in (-half, half)]
+        fine = [np.array([e - window - 0.15 * half, e + 0.15 * half]) + track for e in (-half, half)]
     else:
-        told = [np.array([track - window - 1.5 * half, track + 1.5 * half])]
+        fine = [np.array([track - window - 1.5 * half, track + 1.5 * half])]
 
     def element(x: float) -> float:
-        away = min(max(low - x, x - high, 0.0) for low, high in told)
+        away = min(max(low - x, x - high, 0.0) for low, high in fine)
         behind = max(track - window - 2 * half - x, 0.0)
         return min(finest + GROWTH * away, half / fineness + GROWTH * behind, half / COARSEST)
 

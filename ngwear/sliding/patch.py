@@ -45,8 +45,8 @@ def contact_patch(contact: PatchContact) -> Patch:
     Inside a contact the pressure vanishes with the root of the distance from its edge, so that its square is smooth up
     to there (Hertz's is a paraboloid). The edge is the zero line of the polynomial P(x, y) of degree 4 whose root,
     averaged over each loaded face and each of their neighbours, comes nearest to the faces' pressures in the mean
-    square. An area counted by elements is quantised, and one extrapolated from the gaps outside scatters with how the
-    mesh lies where elements are few.
+    square. The area of the loaded elements would be quantised, and an area extrapolated from the gaps outside would
+    scatter with a coarse mesh.
     """
     ball = contact.surface
     if not isinstance(ball, Sphere):

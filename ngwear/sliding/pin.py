@@ -1,4 +1,4 @@
-"""A pin on a plate: a ball runs along a circle on a bonded sheet of rubber that remembers (case C2)."""
+"""A pin on a plate: a ball slides along a circle on a bonded sheet of viscoelastic rubber (case C2)."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.steady_memory import SteadyMemory
 from ngwear.equilibrium.problem import FixedEdges, Problem
-from ngwear.equilibrium.state_transfer import carry_solid
+from ngwear.equilibrium.state_transfer import transfer_solid
 from ngwear.equilibrium.steady_sliding import SteadyOptions, solve_steady
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import SceneError
@@ -46,10 +46,10 @@ class PinSlide:
         Parts of the friction coefficient: from the friction on the surface, and from the pressure, which the rubber's
         memory makes uneven [-]. Moments about the track's axis over its radius and the load.
     slip_work : float
-        What the surface friction dissipates, over load and track [-]. More than the surface friction, as the stretched
-        rubber passes the pin faster than the track; the pressure's share of the friction pays for the rest.
+        Dissipation of the surface friction over load and track [-]. It is larger than ``surface_friction``, because the
+        stretched rubber passes the pin faster than the track; the pressure does the rest of this work.
     dissipation : float
-        What the rubber dissipates, over load and track [-]. With the slip's work it makes the friction.
+        Dissipation of the rubber over load and track [-]. Its sum with ``slip_work`` is the friction.
     depth : float
         Penetration [mm].
     patch : Patch
@@ -80,7 +80,7 @@ class PinSlide:
 
     @property
     def peak(self) -> float:
-        """Highest Cauchy pressure [MPa], without the scatter of single faces."""
+        """Highest Cauchy pressure [MPa], smoothed over the faces near the peak."""
         return self.faces.peak
 
 
@@ -129,7 +129,7 @@ class PinStage:
         return float(self.problem.fields[self.contact.travel_name].vec[0])
 
     def press(self) -> Work:
-        """Bring the load on, the rubber elastic; from first touch."""
+        """Apply the load from first contact, with long-term elastic rubber."""
         pin, travel = self.pin, self.problem.fields[self.contact.travel_name].vec
         travel[0] = 0.01 * pin.radius
         force = "pin force [N]"
@@ -139,7 +139,7 @@ class PinStage:
         return work
 
     def slide(self, speed: float, options: SteadyOptions) -> Work:
-        """Find the steady state at a speed from the present one."""
+        """Find the steady state at a speed, starting from the present state."""
         if self.memory is None:
             raise SceneError("pin.series", None, "sliding without memory has no speed: press the pin on")
         self.problem.set_loads({"pin force [N]": self.pin.load})
@@ -164,7 +164,7 @@ class PinStage:
         ng.VTKOutput(self.body.mesh, coefs=[fields[DISPLACEMENT], stress], names=names, filename=str(file)).Do()
 
     def result(self, speed: float, work: Work, cpu: float) -> PinSlide:
-        """What there is to see."""
+        """The state as a ``PinSlide``."""
         pin, contact = self.pin, self.contact
         surface = slip = 0.0
         if self.friction is not None:
@@ -196,7 +196,7 @@ def slide_pin(
 ) -> tuple[PinSlide, PinSlide]:
     """Slide steadily on a coarse mesh, refine to the contact found there, and slide again; both, the fine one last.
 
-    The first mesh has elements and columns 1.6 times as large, so that the two tell the error of both.
+    The first mesh has elements and columns 1.6 times as large, so that the two meshes give an error estimate.
 
     Parameters
     ----------
@@ -225,7 +225,7 @@ def slide_pin(
     work.add(coarse.slide(speed, options))
     first = coarse.result(speed, work, time.process_time() - clock)
     fine = PinStage(pin, mesh, coarse.disc(), speed=speed)
-    carry_solid(coarse.problem, fine.problem)
+    transfer_solid(coarse.problem, fine.problem)
     work = fine.slide(speed, options)
     if vtk is not None:
         fine.write_vtk(vtk / f"sheet_{speed:g}_mm_s")
@@ -233,7 +233,7 @@ def slide_pin(
 
 
 def coarsened(mesh: PinMesh) -> PinMesh:
-    """The mesh that a slide starts on."""
+    """The coarse mesh of the first slide."""
     return replace(mesh, patch=COARSER * mesh.patch, column=COARSER * mesh.column)
 
 

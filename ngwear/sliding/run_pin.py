@@ -41,7 +41,7 @@ ORDERS = dict.fromkeys(READINGS, 2.0)  # of convergence; settled on the pin (``v
 
 @dataclass(frozen=True)
 class PinResult:
-    """How a run of a pin ended, and what it found; printed, a table with the stated errors.
+    """Result of a run of a pin; ``print`` shows a table with the stated errors.
 
     Attributes
     ----------
@@ -188,16 +188,16 @@ def row(coarse: PinSlide, fine: PinSlide) -> dict[str, float]:
 
 
 def readings(slides: list[PinSlide]) -> dict[str, dict[str, list[float]]]:
-    """What is read off at all speeds, by the name of its error."""
+    """Results at all speeds, by the name of their error."""
     return {error: {error: [read(slide) for slide in slides]} for error, read in READINGS.items()}
 
 
 def estimates(scene: PinScene, pairs: list[Pair]) -> dict[str, float]:
-    """Relative error of what is read off, in the mean square of the speeds: each whole, then its parts by their names.
+    """Relative errors of the results, as root mean square over the speeds: each total, then its parts by name.
 
-    Of elements and columns (the time steps) from the two meshes of each speed; of the arms that are folded away their
-    bound, at the worst speed. What is integrated over the contact, or fitted to many of its faces, errs by the square
-    of what the strains do, and time steps are of second order.
+    Of elements and columns (the time steps) from the two meshes of each speed; of the relaxation times left out (fast:
+    relaxed at once; slow: part of the elastic stiffness) their bound, at the worst speed. Integrals over the contact
+    converge with the square of the error of the strains, and time steps are of second order.
     """
     folded = max(scene.mesh.folding(scene.pin.arms, fine.speed).bound for _, fine in pairs)
     coarse, fine = (readings([pair[k] for pair in pairs]) for k in (0, 1))

@@ -57,10 +57,10 @@ class Check:
         return bool(self.error <= (self.tolerance if self.bound == "near" else 0.0))
 
     def __str__(self) -> str:
-        return (
-            f"{'ok  ' if self.passed else 'FAIL'} {self.case:14s} {self.quantity:60s} {self.value:<12.6g} "
-            f"reference {self.reference:<12.6g} error {self.error:.2g} (tolerance {self.tolerance:.2g})"
-        )
+        wanted = f"at {'most' if self.bound == 'below' else 'least'} {self.reference:.6g}"
+        if self.bound == "near":
+            wanted = f"reference {self.reference:<12.6g} error {self.error:.2g} (tolerance {self.tolerance:.2g})"
+        return f"{'ok  ' if self.passed else 'FAIL'} {self.case:14s} {self.quantity:60s} {self.value:<12.6g} {wanted}"
 
     def as_dict(self) -> dict[str, Any]:
         """What a report or a file needs, in plain types."""

@@ -20,7 +20,7 @@ from scipy.sparse import csr_array
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.elasticity import Elasticity
-from ngwear.equilibrium.lost_elements_transfer import keep
+from ngwear.equilibrium.lost_elements_transfer import transfer_to_remaining
 from ngwear.equilibrium.newton import solve
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
@@ -83,7 +83,9 @@ def shares() -> tuple[float, float, float, float]:
     found_energy, found, total, counted = 0.0, np.zeros_like(residual), 0 * matrix, 0.0
     for left in (cells.without(lost, Fate.TORN), cells.without(~lost, Fate.TORN)):
         part = elastic(left)
-        part.state.vec.FV().NumPy()[:], numbers = keep(whole, [state, np.arange(len(state), dtype=float)], part)
+        part.state.vec.FV().NumPy()[:], numbers = transfer_to_remaining(
+            whole, [state, np.arange(len(state), dtype=float)], part
+        )
         its_energy, its_residual, its_matrix = parts(part)
         place = numbers.round().astype(int)
         to_whole = csr_array((np.ones(len(place)), (place, np.arange(len(place)))), shape=(len(state), len(place)))

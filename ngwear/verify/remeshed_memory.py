@@ -23,7 +23,7 @@ from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.viscosity import Viscosity
 from ngwear.equilibrium.problem import FixedEdges, Problem
-from ngwear.equilibrium.state_transfer import carry
+from ngwear.equilibrium.state_transfer import transfer
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, settle
 from ngwear.errors import ConvergenceError
 from ngwear.fields.background_mesh import Background, Seat
@@ -131,7 +131,7 @@ def always_remeshed(kinematics: Kinematics, background: Background, *, seed: int
         before, old = memory, problem
         memory = Viscosity(RUBBER, ARMS, background=background)
         problem = problem_on(section(rng), kinematics, memory)
-        (guess,) = carry(old, [old.state.vec.FV().NumPy().copy()], problem)
+        (guess,) = transfer(old, [old.state.vec.FV().NumPy().copy()], problem)
         problem.state.vec.FV().NumPy()[:] = guess
         memory.take(before)
         solve_step(problem, number)

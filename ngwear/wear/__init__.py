@@ -1,1 +1,1 @@
-"""How an accepted equilibrium becomes a worn body, and how large the next step may be."""
+"""Worn depth from an accepted equilibrium, and the size of the next wear step."""

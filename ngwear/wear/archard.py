@@ -14,14 +14,13 @@ Array = NDArray[np.float64]
 
 
 def worn_share(contour: Outline, profile: ContactProfile, amount: Array) -> Array:
-    """Share out the worn area of a contact's mesh nodes among the outline's points: depth times length of each.
+    """Distribute the worn area of a contact's mesh nodes to the outline's points: depth times length at each.
 
     Archard's law (J. Appl. Phys. 24 (1953) 981) per reference area, ``W = k P ds / J`` with the nominal
-    pressure P, so that a stretched lip loses the right volume. The sum is kept exactly.
+    pressure P, so that the volume is right on a stretched lip too. The sum is conserved exactly.
 
-    Along a mesh edge the depth is the parabola that has the nodes' values at its ends and wears what the edge's own
-    mean pressure does. The nodes' values alone would not tell edges that bulge in turn, of more pressure than their
-    neighbours, from those that do not: no wear would ever take such waves off the outline.
+    Along a mesh edge the depth is a parabola with the nodes' values at its ends and the mean that belongs to the edge's
+    mean pressure. With the nodes' values alone, waves of the outline from edge to edge would not be worn.
 
     Parameters
     ----------

@@ -27,16 +27,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class Motion:
-    """To and fro, in gross slip.
+    """Oscillating motion in gross slip.
 
     Parameters
     ----------
     amplitude : float
-        Imposed on the surface, to either side [mm].
+        Amplitude of the surface [mm].
     wear_rate, counter_wear_rate : float
         Specific wear rates of the part and of the surface [mm²/N].
     places : int
-        Gauss points at which each way is resolved.
+        Gauss points on each stroke.
     """
 
     amplitude: float
@@ -70,7 +70,7 @@ class Scar:
 
     @property
     def depth(self) -> Array:
-        """How far each point of the part has been worn back [mm], shape (n,)."""
+        """Worn depth at each point of the part [mm], shape (n,)."""
         return np.linalg.norm(self.worn - self.place, axis=1)
 
     @property
@@ -83,18 +83,18 @@ class Scar:
 
 @dataclass
 class Visit:
-    """One place of the surface on one of its ways: what is kept of it for the next cycle that is solved.
+    """One position of the surface on a stroke, with the data that the next solved cycle starts from.
 
     Attributes
     ----------
     place : float
-        Of the surface over the part where they slide, in units of the half path of slip [-].
+        Position of the surface during slip, over half the slip distance [-].
     weight : float
-        Share of the way [-].
+        Share of the stroke [-].
     direction : int
         Of the motion.
     vector : array or None
-        Equilibrium of the last time.
+        Equilibrium of the last solve.
     pressure : array, shape (k,)
         Nominal pressure at the contact's nodes then [MPa]; empty before it has been solved.
     """
@@ -108,13 +108,13 @@ class Visit:
 
 @dataclass
 class Fretting:
-    """A contact in gross slip, worn a cycle at a time or many at once.
+    """Wear of a contact in gross slip, by single cycles or by cycle jumps.
 
     The surface drags the part along by d, the mean over the contact's force of the part's tangential displacement
-    under the full friction; after each reversal it has to travel 2 d before all of the contact slips again. So the
-    ways of slip are ``2 (amplitude - d)`` long, and the surface stands between ``-(amplitude - d)`` and
-    ``amplitude - d`` over the material that it rubs. d is taken from every solve for the next one. Neglected: the
-    differences of the slip within the contact, and the wear before all of it slips (Cattaneo and Mindlin).
+    under the full friction; after each reversal it has to travel 2 d before all of the contact slips again. So the slip
+    distance of a stroke is ``2 (amplitude - d)``, and during slip the surface is between ``-(amplitude - d)`` and
+    ``amplitude - d`` over the material. Each solve gives the d of the next one. Neglected: the differences of the slip
+    within the contact, and the wear before all of it slips (Cattaneo and Mindlin).
 
     A jump of N cycles is one cycle, to and fro, with N times the slip at each place. There, wear of both bodies is
     implicit in the contact law: ``kappa = (k1 + k2) ds``; afterwards ``k1 P ds / J`` is taken off the outline and
@@ -137,11 +137,11 @@ class Fretting:
     cycles : int
         Done so far.
     drag : float
-        d [mm].
+        Displacement d [mm].
     worn : float
-        ``int W dA`` by the law, off the part [mm²].
+        Worn area of the part by the law, ``int W dA`` [mm²].
     counter_worn : float
-        The same off the surface.
+        Worn area of the surface by the law [mm²].
     """
 
     problem: Problem
@@ -179,14 +179,14 @@ class Fretting:
         return self.contact.counter
 
     def scar(self) -> Scar:
-        """What both bodies look like now."""
+        """Present state of both bodies."""
         mine = self.body.contour.on(self.contact.edges)
         on = mine | np.roll(mine, 1)
         profile, worn = self.contact.profile(), self.body.contour.points[on]
         return Scar(self.cycles, self._unworn[on], worn, self.counter, profile.reference, profile.pressure)
 
     def advance(self, goal: int) -> None:
-        """Take one jump, as many cycles as its error allows, not beyond ``goal`` cycles."""
+        """Compute one jump, with as many cycles as its error allows, up to ``goal`` cycles in total."""
         while True:
             jump = min(self.control.cycles, goal - self.cycles)
             saved = self._save()
@@ -209,7 +209,7 @@ class Fretting:
         self.__dict__.update(numbers)
 
     def _jump(self, cycles: int) -> float:
-        """Wear through one cycle that stands for many; return its error of worn area over the worn area."""
+        """Compute one cycle in place of many; return the relative error of the worn area."""
         error = 0.0
         for visit in self._visits:
             before = visit.pressure

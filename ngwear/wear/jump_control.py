@@ -1,4 +1,4 @@
-"""How many cycles the next step may take."""
+"""Number of cycles of the next step."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ class JumpControl:
 
         n_new = 0.9 n sqrt(tolerance / ratio),   growth at most 2.
 
-    So is what they tell of the greatest depth, each step's error by its share of the program, for which ``depth``
-    stands instead of the tolerance: their sum comes to about that at most, and steps are short where depths are made
-    wrong, be areas as they may. A step that errs by more stands, and shorter ones follow.
+    The same rule holds for the error of the greatest depth, each step's error over its share of the program, with the
+    tolerance ``depth``: the sum of these errors is then about ``depth`` at most. A step with a larger error of depth is
+    accepted, and shorter steps follow.
 
     Parameters
     ----------
@@ -46,12 +46,12 @@ class JumpControl:
     depth: float = 1.0
 
     def share(self, left: int) -> int:
-        """Cycles of the next step when so many are left to the next mark: steps of one length, none a remnant."""
+        """Cycles of the next step when ``left`` cycles remain to the next mark, so that steps have similar lengths."""
         steps = max(1, math.ceil(left / (STRETCH * self.cycles) - 1e-9))
         return math.ceil(left / steps) if steps <= 2 else min(self.cycles, left)
 
     def accepts(self, ratio: float, cycles: int) -> bool:
-        """Whether a step with this error ratio stands; single cycles always do."""
+        """Whether a step with this error ratio is accepted; single cycles always are."""
         return cycles == 1 or not ratio > 2 * self.tolerance  # taking it back costs a solve; the estimate is safe
 
     def update(self, ratio: float, cycles: int, depth: float = 0.0) -> None:

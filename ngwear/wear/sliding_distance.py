@@ -1,4 +1,4 @@
-"""Which ways the strokes of a step slide."""
+"""Sliding distances of the strokes of a step."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Strokes:
-    """Strokes of one kind that one solve stands for, with others of the cycle between them.
+    """Strokes of one kind that one solve represents, with the other strokes of the cycle between them.
 
     Their friction is the law's at ``middle``: of second order in the step, and exact where the law is linear.
 
@@ -25,7 +25,7 @@ class Strokes:
     travel, cycle : float
         Sliding distance of one, and of a whole cycle [mm].
     repeats : int
-        How many; 0 for the state as it is at ``start``, without sliding.
+        Number of strokes; 0 for the state at ``start``, without sliding.
     """
 
     start: float
@@ -35,7 +35,7 @@ class Strokes:
 
     @property
     def distance(self) -> float:
-        """Way that all of them slide [mm]."""
+        """Sliding distance of all strokes [mm]."""
         return self.repeats * self.travel
 
     @property
@@ -44,7 +44,7 @@ class Strokes:
         return self.start + self.cycle * np.arange(self.repeats, dtype=float)
 
     def worn_distance(self, rate: WearRate) -> float:
-        """``int k ds`` over the highest k [mm], exact: the way on which that k would wear as much."""
+        """``int k ds`` over the highest k [mm], exact: the distance over which the highest k gives the same wear."""
         return self.distance if not rate.varies else rate.worn_distance(self.starts, self.travel)
 
     def worn_depth(self, rate: WearRate) -> float:

@@ -3,6 +3,7 @@
 import pytest
 
 from ngwear.loop.run import run
+from ngwear.scene.read_scene import read_scene
 
 SUMMARY = {
     "worn area [mm^2]": 0.020288,
@@ -12,8 +13,11 @@ SUMMARY = {
 }
 
 
-def test_sheet_under_a_roller(sheet):
-    result = run(sheet)
+FINER = (("patch = 0.2", "patch = 0.1"), ("mounting = 0.2", "mounting = 0.15"))
+
+
+def test_sheet_under_a_roller(tmp_path, write_sheet):
+    result = run(read_scene(write_sheet(tmp_path, *FINER)))
     for name, value in SUMMARY.items():
         assert result.summary[name] == pytest.approx(value, rel=5e-3), name
     assert result.summary["solves"] <= 20

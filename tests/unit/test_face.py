@@ -126,7 +126,7 @@ def test_what_was_not_kept_is_said(folder):
         result.pressure("rod")
     with pytest.raises(ResultError, match="no stroke is called 'back'"):
         result.pressure(kind="back")
-    with pytest.raises(ResultError, match="kept only by the run itself"):
+    with pytest.raises(ResultError, match="has no mesh and no fields"):
         _ = nw.read_result(out).mesh
     with pytest.raises(ResultError, match="does not exist"):
         nw.read_result(out / "nowhere")
@@ -178,7 +178,12 @@ def test_bad_ways_to_run_are_refused(sheet_scene_module):
     for how, told in (
         ({"resume": True}, "needs the folder"),
         ({"accuracy": "fine"}, "must be one of"),
-        ({"accuracy": 0.01, "alone": True}, "needs several runs"),
     ):
         with pytest.raises(SceneError, match=told):
             nw.run(sheet_scene_module, progress=False, **how)
+
+
+def test_alone_a_scene_that_asks_for_an_error_is_run_at_the_first_level(sheet_scene_module):
+    found = nw.run(sheet_scene_module, accuracy=0.05, alone=True, progress=False)
+    assert found.summary["warnings"] == ["run alone: the error that the scene asks for is not checked"]
+    assert "maximum depth by mesh and wear steps [-]" not in found.summary["error estimates"]

@@ -9,7 +9,7 @@ from conftest import REMEMBERS
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.elasticity import Elasticity
 from ngwear.equilibrium.problem import Problem
-from ngwear.equilibrium.state_transfer import carry
+from ngwear.equilibrium.state_transfer import transfer
 from ngwear.error_estimates.cost_runs import wear_values
 from ngwear.fields.displacements import displacements
 from ngwear.fields.kinematics import PlaneStrain
@@ -43,7 +43,7 @@ def test_a_new_mesh_gets_what_both_orders_can_show(order, field):
     old.fields[DISPLACEMENT].Set(FIELDS[field])
     stress = ng.x if order < 3 else ng.x**2
     old.fields[VOLUMETRIC_STRESS].Set(stress)
-    (vector,) = carry(old, [old.state.vec.FV().NumPy().copy()], new)
+    (vector,) = transfer(old, [old.state.vec.FV().NumPy().copy()], new)
     new.state.vec.FV().NumPy()[:] = vector
     for name, exact in ((DISPLACEMENT, FIELDS[field]), (VOLUMETRIC_STRESS, stress)):
         off = new.fields[name] - exact

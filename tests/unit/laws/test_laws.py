@@ -92,7 +92,7 @@ def test_worn_distance_is_the_tables_integral():
             lambda: Lubrication(distance=(0.0, 5.0, 3.0), coefficient=(0.1,) * 3),
             "distance[2]",
             3.0,
-            "must be above the row before, 5 mm",
+            "the row before has 5 mm",
         ),
         (lambda: Lubrication(distance=(0.0, 0.0), coefficient=(0.1, 0.2)), "distance[1]", 0.0, "must rise"),
         (lambda: Lubrication(distance=(-1.0, 2.0), coefficient=(0.1, 0.2)), "distance[0]", -1.0, "at least 0 mm"),
