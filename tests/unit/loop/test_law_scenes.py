@@ -184,7 +184,7 @@ def test_jump_does_not_skip_a_phase(tmp_path, write_sheet):
         rows = list(csv.DictReader(file))
     assert (tmp_path / "out" / "laws.png").is_file()
     kept = read_result(tmp_path / "out")
-    assert kept.drifts
+    assert kept.laws_vary
     assert kept.wear_rates["roller"] == pytest.approx(scene.contacts[0].wear_rate.curve.mean(0.0, 400.0))
     mu, k = np.array([[float(row[MU]), float(row[K])] for row in rows]).T
     repeats = np.array([int(row["strokes in one solve [-]"]) for row in rows])
@@ -204,7 +204,7 @@ def test_jump_does_not_skip_a_phase(tmp_path, write_sheet):
 
 
 def test_number_needs_no_column(finished):
-    assert not read_result(finished).drifts
+    assert not read_result(finished).laws_vary
     header = (finished / "series.csv").read_text().splitlines()[0]
     assert "coefficient" not in header
     assert "wear rate" not in header
@@ -269,7 +269,7 @@ def test_pin_takes_laws_by_speed_and_pressure_but_none_by_distance(tmp_path):
     file.write_text(PIN.read_text().replace("friction = 0.06", STRIBECK))
     assert read_scene(file).pin.friction == Stribeck(boundary=0.5, full=0.05, speed=50.0)
     file.write_text(PIN.read_text().replace("friction = 0.06", PHASES))
-    with pytest.raises(SceneError, match=r"pin\.friction = Lubrication.*steady sliding has no distance"):
+    with pytest.raises(SceneError, match=r"pin\.friction = Lubrication.*depends on the sliding distance"):
         read_scene(file)
     file.write_text(PIN.read_text().replace("friction = 0.06", "friction = [0.06]"))
     with pytest.raises(SceneError, match=r"pin\.friction = \[0\.06\]: must be a number"):

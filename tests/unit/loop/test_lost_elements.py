@@ -98,7 +98,7 @@ def test_what_the_table_leaves_out_does_not_happen(read):
             'remesh = "due"',
             "wear.remesh = 'due': must be 'never' in a scene that deactivates elements",
         ),
-        ("1.0e-3", "0.0", "contact.specific_wear_rate = 0.0: at least one contact must wear: below its edges"),
+        ("1.0e-3", "0.0", "contact.specific_wear_rate = 0.0: at least one contact must wear: the layers"),
     ],
 )
 def test_a_mistake_in_the_file_is_told_with_place_value_and_remedy(read, old, new, told):
@@ -141,7 +141,7 @@ BLOCK = grid(np.linspace(0, 3, 7), np.linspace(0, 2, 5))
 def test_a_part_torn_off_its_support_is_reported():
     damage = MaximumPrincipalStress(critical=1.0)
     state = held(BLOCK, NeoHooke(shear=1.0, bulk_modulus=20.0), (Support(edges=("bottom",)),), damage)
-    with pytest.raises(GeometryError, match=r"held or loaded by nothing: nothing of the edges \['bottom'\] is left"):
+    with pytest.raises(GeometryError, match=r"no support or no load: nothing of the edges \['bottom'\] is left"):
         lost_elements.deactivate(state, BLOCK, np.arange(24) < 6, Fate.TORN)
 
 
@@ -159,7 +159,7 @@ def test_a_support_of_which_something_is_left_holds_only_there():
     ("tears", "told"),
     [
         (lambda x, y: np.abs(x - 1.5) < 0.4, "after stroke 2: the section is cut in two"),
-        (lambda x, y: y < 0.6, "after stroke 2: what is left of the section is held or loaded by nothing"),
+        (lambda x, y: y < 0.6, "after stroke 2: the remaining section has no support or no load"),
     ],
     ids=["cut in two", "torn off"],
 )
@@ -312,7 +312,7 @@ def test_what_friction_tears_lies_near_the_contact():
 
 
 def test_a_reach_of_nothing_is_refused():
-    with pytest.raises(SceneError, match=r"deactivation\.reach = 0\.0: must be greater than 0 mm, or left out"):
+    with pytest.raises(SceneError, match=r"deactivation\.reach = 0\.0: must be greater than 0 mm, or be removed"):
         Deactivation(depth=0.3, reach=0.0)
 
 

@@ -391,7 +391,7 @@ def test_full_disk_keeps_the_last_state_and_says_what_to_do(tmp_path, sheet, fin
 
     with monkeypatch.context() as patch:
         patch.setattr(os, "fsync", fsync)
-        with pytest.raises(ResultError, match=r"cannot be written: No space left.*free some space.*--resume"):
+        with pytest.raises(ResultError, match=r"cannot be written: No space left.*free some disk space.*--resume"):
             run(sheet, out=out, figures=False)
     assert not list(out.glob(".*")), "no temporary file is left"
     assert (out / CHECKPOINT).exists() == (fails > 1)
