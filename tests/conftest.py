@@ -64,9 +64,9 @@ name = "stroke"
 travel = 10.0
 
 [accuracy]
-patch = 0.2
+patch = 0.1
 coarse = 0.5
-mounting = 0.2
+mounting = 0.15
 
 [wear]
 step = "each"

@@ -3,7 +3,6 @@
 import pytest
 
 from ngwear.loop.run import run
-from ngwear.scene.read_scene import read_scene
 
 SUMMARY = {
     "worn area [mm^2]": 0.020288,
@@ -13,11 +12,8 @@ SUMMARY = {
 }
 
 
-FINER = (("patch = 0.2", "patch = 0.1"), ("mounting = 0.2", "mounting = 0.15"))
-
-
-def test_sheet_under_a_roller(tmp_path, write_sheet):
-    result = run(read_scene(write_sheet(tmp_path, *FINER)))
+def test_sheet_under_a_roller(sheet):
+    result = run(sheet)
     for name, value in SUMMARY.items():
         assert result.summary[name] == pytest.approx(value, rel=5e-3), name
     assert result.summary["solves"] <= 20

@@ -157,7 +157,7 @@ def test_the_command_line_refuses(asked, told, sheet_file, tmp_path, capsys):
 
 
 def test_the_command_line_takes_a_preset_and_an_error(write_sheet, tmp_path):
-    sheet = str(write_sheet(tmp_path, ("strokes = 4", "strokes = 1")))
+    sheet = str(write_sheet(tmp_path, ("strokes = 4", "strokes = 2")))
     for asked, more in (("draft", ["--alone"]), ("0.05", [])):
         out = tmp_path / asked
         assert main(["run", sheet, "--out", str(out), "--accuracy", asked, "--quiet", *more]) == 0

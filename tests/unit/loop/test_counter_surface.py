@@ -117,8 +117,7 @@ def test_a_worn_plate_comes_away(plates):
 
 
 def test_profile_is_kept_in_files_and_through_a_kill(tmp_path, write_sheet, monkeypatch):
-    turns, _, jumps = TO_AND_FRO
-    scene = read_scene(write_sheet(tmp_path, WEARS, turns, ("strokes = 4", "strokes = 6"), jumps))
+    scene = read_scene(write_sheet(tmp_path, WEARS, *TO_AND_FRO))
     whole = run(scene, out=tmp_path / "whole", figures=False)
     last = read_result(tmp_path / "whole").snapshots[-1].profiles["roller"]
     counter = whole.state.counters["roller"]
@@ -127,7 +126,7 @@ def test_profile_is_kept_in_files_and_through_a_kill(tmp_path, write_sheet, monk
     assert whole.recorder.rows[-1]["roller counter-surface worn area [mm^2]"] == pytest.approx(counter.area)
 
     def kill(state):
-        if state.strokes >= 2:
+        if state.strokes >= 4:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):

@@ -236,8 +236,7 @@ def torn_whole():
     return run(torn_scene(), figures=False)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("stop", [0, 3])
+@pytest.mark.parametrize("stop", [pytest.param(0, marks=pytest.mark.slow), 3])
 def test_interrupted_and_resumed_it_ends_as_uninterrupted(tmp_path, torn_whole, stop):
     """Before and after elements are lost by every cause."""
     torn, whole = torn_scene(), torn_whole
@@ -260,7 +259,6 @@ def on_large_elements(scene):
     return replace(scene, accuracy=replace(scene.accuracy, patch=0.2, mounting=0.2))
 
 
-@pytest.mark.slow
 def test_resumed_fatigue_goes_on_where_it_was(tmp_path):
     tiring = on_large_elements(scene("implicit", damage=Fatigue(critical=2.0, exponent=2.0)))
     tiring = replace(tiring, program=replace(tiring.program, strokes=4))
@@ -333,7 +331,6 @@ def test_wear_passes_through_layers_and_loses_no_area():
         base,
         contacts=(replace(spec, specific_wear_rate=60 * spec.specific_wear_rate),),
         wear=replace(base.wear, step="jump"),
-        accuracy=replace(base.accuracy, patch=0.15, mounting=0.15),
     )
     whole = Stepper(deep).start().cells
     state = run(deep, figures=False).state

@@ -240,7 +240,6 @@ def test_forces_of_a_ring_with_memory_are_in_balance(remembering):
     assert total == pytest.approx(0.0, abs=1e-6 * abs(forces["hoop"][1]))
 
 
-@pytest.mark.slow
 @pytest.mark.skipif(not has_pardiso(), reason="only PARDISO (the extra 'fast') repeats itself bit for bit")
 def test_stopped_and_resumed_memory_is_the_same_to_the_last_bit(tmp_path, remembering, ends):
     whole = ends[1]

@@ -216,7 +216,7 @@ def stop_after(monkeypatch, strokes, error):
     monkeypatch.setattr(Stepper, "advance", advance)
 
 
-@pytest.mark.parametrize("strokes", [pytest.param(0, marks=pytest.mark.slow), 2])
+@pytest.mark.parametrize("strokes", [0, 2])
 def test_interrupted_and_resumed_is_the_same_as_uninterrupted(tmp_path, sheet, finished, monkeypatch, strokes):
     out = tmp_path / "out"
     with monkeypatch.context() as patch:
@@ -238,7 +238,7 @@ def jumping(folder, write_sheet):
         ("strokes = 4", "strokes = 16"),
         ("travel = 10.0", back),
         ('step = "each"', 'step = "jump"'),
-        ("patch = 0.2", "patch = 0.2\nwear_error = 0.05"),
+        ("patch = 0.1", "patch = 0.1\nwear_error = 0.05"),
     )
 
 
@@ -249,7 +249,7 @@ def jumped(tmp_path_factory, write_sheet):
     return folder / "whole", run(read_scene(jumping(folder, write_sheet)), out=folder / "whole", figures=False)
 
 
-@pytest.mark.parametrize("stop", [pytest.param(2, marks=pytest.mark.slow), 6])
+@pytest.mark.parametrize("stop", [2, 6])
 def test_resume_of_jumps_over_a_cycle_of_two_strokes(tmp_path, write_sheet, monkeypatch, jumped, stop):
     scene = read_scene(jumping(tmp_path, write_sheet))
     folder, whole = jumped
@@ -439,8 +439,8 @@ def through(tmp_path, write_sheet):
         ("1.0e-3", "1.0e-2"),
         ("strokes = 4", "strokes = 100"),
         ("coarse = 0.5", "coarse = 0.1"),
-        ("mounting = 0.2", "mounting = 0.1"),
-        ("patch = 0.2", "patch = 0.05"),
+        ("mounting = 0.15", "mounting = 0.1"),
+        ("patch = 0.1", "patch = 0.05"),
         outline=outline,
     )
 
@@ -515,7 +515,7 @@ def test_vtk_on_request(tmp_path, sheet):
 
 def worn_deep(folder, write_sheet, remesh):
     """The small scene worn to half its thickness, with the nodes that follow it."""
-    changes = [("1.0e-3", "3.2e-2"), ("coarse = 0.5", "coarse = 0.3"), ("patch = 0.2", "patch = 0.15")]
+    changes = [("1.0e-3", "3.2e-2"), ("coarse = 0.5", "coarse = 0.3"), ("patch = 0.1", "patch = 0.15")]
     choice = ('step = "each"', f'step = "each"\nremesh = "{remesh}"')
     return write_sheet(folder, ("strokes = 4", "strokes = 12"), *changes, choice)
 

@@ -59,7 +59,7 @@ def worn(folder, write_sheet, travel):
 
 def test_short_strokes_wear_what_slips_only_and_long_ones_nearly_all(tmp_path, write_sheet):
     shares, heats = [], []
-    for k, travel in enumerate((0.02, 2.0)):
+    for k, travel in enumerate((0.02, 5.0)):
         (tmp_path / str(k)).mkdir()
         result = worn(tmp_path / str(k), write_sheet, travel)
         shares.append(result.summary["worn area [mm^2]"] / (RATE * FORCE * 2 * travel))

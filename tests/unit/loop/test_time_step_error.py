@@ -51,7 +51,8 @@ def by_time(name):
 def creeping_in(folder):
     """A sheet of rubber with memory under a roller that goes to and fro with much friction."""
     much = ("friction = 0.1", "friction = 0.6\nsticks = false")
-    return read_scene(_write_sheet(folder, *REMEMBERS, *TO_AND_FRO, much))
+    coarse = ("patch = 0.1", "patch = 0.2"), ("mounting = 0.15", "mounting = 0.2")
+    return read_scene(_write_sheet(folder, *REMEMBERS, *TO_AND_FRO, much, *coarse))
 
 
 @pytest.fixture
@@ -123,7 +124,7 @@ def test_no_part_at_all_is_refused(elastic, parts):
 
 def test_half_a_part_is_refused(tmp_path, write_sheet):
     with pytest.raises(SceneError, match=r"accuracy.parts = 1.5: must be a whole number"):
-        read_scene(write_sheet(tmp_path, ("patch = 0.2", "patch = 0.2\nparts = 1.5")))
+        read_scene(write_sheet(tmp_path, ("patch = 0.1", "patch = 0.1\nparts = 1.5")))
 
 
 def test_what_sticks_and_wears_has_whole_strokes(creeping):
@@ -264,7 +265,6 @@ def test_a_level_refines_what_errs(level, stated, by_time_step, found):
     assert next_level(level, stated, by_time_step, 0.01) == found
 
 
-@pytest.mark.slow
 def test_a_run_to_an_error_takes_the_parts_that_it_needs(tmp_path, creeping, monkeypatch):
     """The time step's error here is too small to matter: it is told to be 3 % with one part, and half with two."""
 
