@@ -81,7 +81,7 @@ def test_unknown_fields_strokes_and_kinds_are_refused_with_those_that_are_known(
         draw_section(result, stroke=3)
     with pytest.raises(ResultError, match=r"no stroke is called 'back': the cycle has \['stroke'\]"):
         draw_section(result, kind="back")
-    with pytest.raises(ResultError, match="'old' has kept no section"):
+    with pytest.raises(ResultError, match="'old' has no saved section"):
         draw_section(KeptSections("old", [], {}))
 
 
