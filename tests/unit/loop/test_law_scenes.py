@@ -179,7 +179,7 @@ def test_jump_does_not_skip_a_phase(tmp_path, write_sheet):
     rates = ("specific_wear_rate = 1.0e-3", f"specific_wear_rate = {RATES}")
     scene = read_scene(with_friction(tmp_path, write_sheet, PHASES, rates, *JUMPING))
     result = run(scene, out=tmp_path / "out", figures=False)
-    plot(tmp_path / "out", share=(3, 4))
+    plot(tmp_path / "out", share=(4, 5))
     with (tmp_path / "out" / "series.csv").open() as file:
         rows = list(csv.DictReader(file))
     assert (tmp_path / "out" / "laws.png").is_file()
