@@ -76,7 +76,7 @@ def few_levels(patch):
 def studied(tmp_path_factory, write_sheet):
     """A study of a few levels, and its scene's file."""
     folder = tmp_path_factory.mktemp("cost")
-    file = write_sheet(folder, *JUMPS, *COARSE)
+    file = write_sheet(folder, *JUMPS)
     with pytest.MonkeyPatch.context() as patch:
         few_levels(patch)
         found = cost(read_scene(file), budget=AMPLE, folder=folder / "out")
