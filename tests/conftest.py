@@ -2,11 +2,12 @@
 
 import os
 import shutil
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ngwear.geometry.outline import Outline
 from ngwear.parallel.workers import ONE_THREAD
@@ -14,6 +15,7 @@ from ngwear.scene.read_scene import read_scene
 
 TESTS = Path(__file__).parent
 FOLDERS = ("unit", "verification", "stability", "regression", "benchmarks")
+DRAW = FigureCanvasAgg.draw
 SEAL = TESTS.parent / "geometries" / "rod_seal" / "scene.toml"
 
 SHEET_OUTLINE = """
@@ -110,12 +112,21 @@ def pytest_collection_modifyitems(config, items):
             item.add_marker(pytest.mark.skip(reason="slow: give --slow"))
 
 
-@pytest.fixture(autouse=True)
-def _figures_as_they_fall(request, monkeypatch):
-    """Without ``--slow`` figures of a test are drawn, but not laid out; those of fixtures for several tests are."""
-    if request.config.getoption("--slow") or "matplotlib" not in sys.modules:
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item):
+    """Without ``--slow`` figures are built; those of the tests of ``tests/unit/plots`` are rendered, none is laid out."""
+    if item.config.getoption("--slow"):
         return
-    monkeypatch.setattr("matplotlib.layout_engine.ConstrainedLayoutEngine.execute", lambda self, figure: None)
+    ConstrainedLayoutEngine.execute = _as_it_is
+    FigureCanvasAgg.draw = DRAW if item.path.parent.name == "plots" else _leave_blank
+
+
+def _as_it_is(engine, figure):
+    pass
+
+
+def _leave_blank(canvas):
+    canvas.renderer = canvas.get_renderer()
 
 
 def edited(text: str, changes) -> str:
