@@ -12,8 +12,8 @@ SUMMARY = {
 }
 
 
-def test_sheet_under_a_roller(sheet):
-    result = run(sheet)
+def test_sheet_under_a_roller(fine_sheet):
+    result = run(fine_sheet)
     for name, value in SUMMARY.items():
         assert result.summary[name] == pytest.approx(value, rel=5e-3), name
     assert result.summary["solves"] <= 20

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import REMEMBERS
+from conftest import FINE, REMEMBERS
 
 from ngwear.cli import BAD_INPUT, GAVE_UP, OK, main
 from ngwear.error_estimates import settings as settings_module
@@ -30,7 +30,6 @@ from ngwear.scene.read_scene import read_scene
 from ngwear.verify.rod_seal import shipped_scene
 
 JUMPS = (("strokes = 4", "strokes = 12"), ('step = "each"', 'step = "jump"'))
-COARSE = (("patch = 0.1", "patch = 0.2"), ("mounting = 0.15", "mounting = 0.2"))
 PIN = """
 [scene]
 kind = "pin on plate"
@@ -76,7 +75,7 @@ def few_levels(patch):
 def studied(tmp_path_factory, write_sheet):
     """A study of a few levels, and its scene's file."""
     folder = tmp_path_factory.mktemp("cost")
-    file = write_sheet(folder, *JUMPS)
+    file = write_sheet(folder, *FINE, *JUMPS)
     with pytest.MonkeyPatch.context() as patch:
         few_levels(patch)
         found = cost(read_scene(file), budget=AMPLE, folder=folder / "out")
@@ -324,7 +323,7 @@ def test_an_alarm_that_nothing_catches_stops_the_run_all_the_same():
 
 
 def test_a_run_that_gives_up_says_why(tmp_path, write_sheet):
-    scene = read_scene(write_sheet(tmp_path, ("force = 0.5", "force = 500"), *COARSE))
+    scene = read_scene(write_sheet(tmp_path, ("force = 0.5", "force = 500")))
     found = measure(Point(scene))
     assert found.status == "gave up"
     assert "no equilibrium" in found.message
@@ -351,7 +350,7 @@ def test_command_line_refuses_in_one_line(sheet_file, capsys, tmp_path):
 def test_command_line_when_every_rung_gives_up(tmp_path, write_sheet, monkeypatch, capsys):
     few_levels(monkeypatch)
     monkeypatch.setattr(settings_module, "STRESS", (1.0,))
-    file = write_sheet(tmp_path, ("force = 0.5", "force = 500"), ("strokes = 4", "strokes = 1"), *COARSE)
+    file = write_sheet(tmp_path, ("force = 0.5", "force = 500"), ("strokes = 4", "strokes = 1"))
     assert main(["cost", str(file), "--budget", str(AMPLE), "--quiet"]) == GAVE_UP
     assert "no equilibrium" in capsys.readouterr().err
 

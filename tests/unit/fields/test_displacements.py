@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import ngsolve as ng
 import pytest
-from conftest import REMEMBERS
+from conftest import FINE, REMEMBERS
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS
 from ngwear.effects.elasticity import Elasticity
@@ -65,7 +65,7 @@ def test_pressures_given_at_both_ends_of_each_edge_are_found_there(sheet, order)
 )
 def test_orders_wear_the_sheet_alike(tmp_path, write_sheet, changes):
     """Order 3 to a thousandth, order 1 to a fiftieth, its contact's ends to an element."""
-    found, sheet = {}, read_scene(write_sheet(tmp_path, *changes))
+    found, sheet = {}, read_scene(write_sheet(tmp_path, *FINE, *changes))
     for order, error in ((1, 0.22), (2, 0.05), (3, 0.011)):
         scene = replace(sheet, accuracy=replace(sheet.accuracy, order=order, stress_error=error))
         result = run(scene)

@@ -10,9 +10,9 @@ from ngwear.scene.accuracy import Accuracy
 
 
 @pytest.fixture
-def started(sheet):
+def started(fine_sheet):
     def make(**accuracy):
-        scene = replace(sheet, accuracy=replace(sheet.accuracy, **accuracy))
+        scene = replace(fine_sheet, accuracy=replace(fine_sheet.accuracy, **accuracy))
         return Stepper(scene).start()
 
     return make

@@ -13,6 +13,7 @@ import time
 from dataclasses import replace
 
 import pytest
+from conftest import FINE
 
 from ngwear.cli import main
 from ngwear.equilibrium.newton import Outcome, Report
@@ -120,8 +121,8 @@ def test_wear_lowers_the_pressure_and_deepens_steadily(finished):
     assert depth[-1] > 0.01
 
 
-def test_force_and_friction_obey_coulomb(finished):
-    for row in rows_of(finished):
+def test_force_and_friction_obey_coulomb(fine_sheet):
+    for row in run(fine_sheet).recorder.rows:
         normal = float(row["roller force y [N/mm]"]) + float(row["roller friction force y [N/mm]"])
         along = float(row["roller force x [N/mm]"]) + float(row["roller friction force x [N/mm]"])
         assert normal == pytest.approx(-0.5, rel=1e-6), "pressure and friction together, however worn the outline is"
@@ -156,7 +157,7 @@ def test_no_strokes_is_only_mounted(tmp_path, write_sheet):
 @pytest.mark.parametrize("centre", [3.99, 4.0, 4.2])
 def test_roller_under_force_finds_the_sheet_from_where_it_is(tmp_path, write_sheet, centre):
     """A surface under force may start inside the part, just touching it, or away from it: the rest is the same."""
-    scene = read_scene(write_sheet(tmp_path, ("3.99", str(centre)), ("strokes = 4", "strokes = 1")))
+    scene = read_scene(write_sheet(tmp_path, *FINE, ("3.99", str(centre)), ("strokes = 4", "strokes = 1")))
     result = run(scene, figures=False)
     assert result.summary["peak pressure [MPa]"] == pytest.approx(0.591, rel=0.02)
 
@@ -238,7 +239,7 @@ def jumping(folder, write_sheet):
         ("strokes = 4", "strokes = 16"),
         ("travel = 10.0", back),
         ('step = "each"', 'step = "jump"'),
-        ("patch = 0.1", "patch = 0.1\nwear_error = 0.05"),
+        ("patch = 0.2", "patch = 0.2\nwear_error = 0.05"),
     )
 
 
@@ -439,8 +440,8 @@ def through(tmp_path, write_sheet):
         ("1.0e-3", "1.0e-2"),
         ("strokes = 4", "strokes = 100"),
         ("coarse = 0.5", "coarse = 0.1"),
-        ("mounting = 0.15", "mounting = 0.1"),
-        ("patch = 0.1", "patch = 0.05"),
+        ("mounting = 0.2", "mounting = 0.1"),
+        ("patch = 0.2", "patch = 0.05"),
         outline=outline,
     )
 
@@ -515,7 +516,7 @@ def test_vtk_on_request(tmp_path, sheet):
 
 def worn_deep(folder, write_sheet, remesh):
     """The small scene worn to half its thickness, with the nodes that follow it."""
-    changes = [("1.0e-3", "3.2e-2"), ("coarse = 0.5", "coarse = 0.3"), ("patch = 0.1", "patch = 0.15")]
+    changes = [("1.0e-3", "3.2e-2"), ("coarse = 0.5", "coarse = 0.3"), ("patch = 0.2", "patch = 0.15")]
     choice = ('step = "each"', f'step = "each"\nremesh = "{remesh}"')
     return write_sheet(folder, ("strokes = 4", "strokes = 12"), *changes, choice)
 

@@ -51,8 +51,7 @@ def by_time(name):
 def creeping_in(folder):
     """A sheet of rubber with memory under a roller that goes to and fro with much friction."""
     much = ("friction = 0.1", "friction = 0.6\nsticks = false")
-    coarse = ("patch = 0.1", "patch = 0.2"), ("mounting = 0.15", "mounting = 0.2")
-    return read_scene(_write_sheet(folder, *REMEMBERS, *TO_AND_FRO, much, *coarse))
+    return read_scene(_write_sheet(folder, *REMEMBERS, *TO_AND_FRO, much))
 
 
 @pytest.fixture
@@ -124,7 +123,7 @@ def test_no_part_at_all_is_refused(elastic, parts):
 
 def test_half_a_part_is_refused(tmp_path, write_sheet):
     with pytest.raises(SceneError, match=r"accuracy.parts = 1.5: must be a whole number"):
-        read_scene(write_sheet(tmp_path, ("patch = 0.1", "patch = 0.1\nparts = 1.5")))
+        read_scene(write_sheet(tmp_path, ("patch = 0.2", "patch = 0.2\nparts = 1.5")))
 
 
 def test_what_sticks_and_wears_has_whole_strokes(creeping):

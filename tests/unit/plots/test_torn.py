@@ -221,7 +221,7 @@ def test_window_of_the_moving_picture_holds_the_worn_face(result):
 def ran(tmp_path_factory, write_sheet):
     """A run from the command line."""
     folder = tmp_path_factory.mktemp("torn")
-    scene = write_sheet(folder, *DEACTIVATION, ("patch = 0.1", "patch = 0.2"), ("mounting = 0.15", "mounting = 0.2"))
+    scene = write_sheet(folder, *DEACTIVATION)
     assert main(["run", str(scene), "--out", str(folder / "out"), "--quiet", "--alone"]) == OK
     return folder / "out"
 

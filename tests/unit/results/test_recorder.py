@@ -24,7 +24,7 @@ CHANGES = [
     ("1.0e-3", "1.1e-3"),
     ("strokes = 4", "strokes = 5"),
     ("travel = 10.0", "travel = 10.5"),
-    ("patch = 0.1", "patch = 0.09"),
+    ("patch = 0.2", "patch = 0.09"),
     ("radius = 2.0", "radius = 1.99"),
     ('[[support]]\nedges = ["bottom"]', '[[support]]\nedges = ["bottom"]\nx = false'),
 ]

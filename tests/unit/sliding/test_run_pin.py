@@ -86,6 +86,7 @@ def test_a_run_states_its_errors_and_draws_them(finished):
     assert band.get_paths()[0].vertices[:, 1].max() == pytest.approx(top)
 
 
+@pytest.mark.rendered
 def test_figures_are_drawn_again(finished, capsys):
     (finished / "out" / "friction.png").unlink()
     assert main(["plot", str(finished / "out")]) == OK
