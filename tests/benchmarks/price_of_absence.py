@@ -102,7 +102,7 @@ def pair(effect, edge=0.1):
         "wear": (worn, bare),
         "law of wear": (rolled(worn, wear_law=PowerWear(exponent=1.5)), worn),
         "wear of the surface": (rolled(worn, counter_wear_rate=1e-6), worn),
-        "lost elements": (replace(worn, deactivation=Deactivation(depth=0.3)), worn),
+        "lost elements": (replace(worn, deactivation=Deactivation(depth=max(0.3, edge))), worn),
     }
     return pairs[effect]
 

@@ -13,7 +13,7 @@ import pytest
 @pytest.fixture(scope="module")
 def told():
     """Of scenes on coarse elements; which they are does not matter where all shall be equal to the last bit."""
-    return price_of_absence.compare_facts(0.3)
+    return price_of_absence.compare_facts(0.45)
 
 
 @pytest.mark.parametrize("effect", price_of_absence.QUICK)

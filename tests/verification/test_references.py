@@ -15,13 +15,11 @@ from ngwear.verify.base import Check
 
 SHORT = (  # what is quick and protects most; the others of ``ngwear verify`` without names take a minute
     "tangents",
-    "convergence",
     "locking",
     "hertz",
     "p1a",
     "ring",
     "leak_pressure",
-    "stability_pair",
     "lost_elements",
 )
 SLOW = tuple(case for case in CASES if case not in SHORT)

@@ -120,6 +120,7 @@ def test_a_way_out_of_a_bad_guess_lets_nothing_slip():
     assert abs(forces[1]) < 0.5 * abs(forces[0])
 
 
+@pytest.mark.slow
 def test_ball_on_a_sheet_slips_from_its_rim_and_then_altogether():
     ticks = np.arange(-1.6, 1.7, 0.8)
     places = np.stack(np.meshgrid(ticks, ticks), axis=-1).reshape(-1, 2)

@@ -144,7 +144,7 @@ def test_a_part_that_cannot_be_mounted_is_still_explained(told):
 
 
 def test_shipped_seals_text(seal):
-    found = explain(replace(seal, accuracy=Accuracy(mounting=0.06)))
+    found = explain(replace(seal, accuracy=Accuracy.draft()))
     text = "\n".join(lines(found))
     assert "left out: viscosity, stick-slip, heat" in text
     assert "heat cannot be judged from the scene: the strokes have no speed" in text

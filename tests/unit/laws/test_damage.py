@@ -260,7 +260,13 @@ def test_jumps_tear_what_single_cycles_tear():
     assert found[1][1] < found[0][1] == 8
 
 
-@pytest.mark.parametrize("wear", [Wear(step="jump", remesh="never"), Wear(step="fixed", max_jump=50, remesh="never")])
+@pytest.mark.parametrize(
+    "wear",
+    [
+        Wear(step="jump", remesh="never"),
+        pytest.param(Wear(step="fixed", max_jump=50, remesh="never"), marks=pytest.mark.slow),
+    ],
+)
 def test_in_a_jump_an_element_is_torn_at_most_one_hundredth_of_the_program_too_late(wear):
     """Hardly any wear: what a cycle uses up of the most strained element stays as it is."""
     usage, cycles = 1 / 210.5, 400

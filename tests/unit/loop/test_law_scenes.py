@@ -280,7 +280,7 @@ def test_pin_slides_with_the_friction_of_its_speed():
     sheet = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1500.0)
     law = Stribeck(boundary=0.5, full=0.05, speed=50.0)
     pin = Pin(material=sheet, series=PronySeries((1.0,), (1e-3,)), load=20.0, track_radius=math.inf, friction=law)
-    stage = PinStage(pin, PinMesh(patch=0.8, column=0.4, reach=3.0, beside=2.5), (0.0, 0.0, 2.0), speed=80.0)
+    stage = PinStage(pin, PinMesh(patch=1.2, column=0.6, reach=2.5, beside=2.0), (0.0, 0.0, 2.0), speed=80.0)
     stage.press()
     found = stage.result(80.0, stage.slide(80.0, SteadyOptions(tolerance=2e-3)), 0.0)
     assert found.surface_friction == pytest.approx(law.mu(0.0, 80.0), rel=0.05)

@@ -113,6 +113,7 @@ def test_where_it_is_not_asked_for_there_is_none(fluid):
     assert LEAKS not in quantities(result.recorder.rows)
 
 
+@pytest.mark.slow
 def test_meshes_are_fine_where_the_fluid_meets_a_contact_that_is_not_followed():
     seal, longest = at_level(shipped_scene(), 2.5), []
     for asked in (False, True):

@@ -323,6 +323,7 @@ def test_explain_says_what_may_be_lost():
     assert "elements that may be lost" not in explain(replace(scene(), deactivation=None))["effects"]
 
 
+@pytest.mark.slow
 def test_wear_passes_through_layers_and_loses_no_area():
     """Nodes that reach those beneath become one with them: the outline and the contact stay, the area is the law's."""
     base = scene("implicit")

@@ -57,6 +57,7 @@ def worn(folder, write_sheet, travel):
     return result
 
 
+@pytest.mark.slow
 def test_short_strokes_wear_what_slips_only_and_long_ones_nearly_all(tmp_path, write_sheet):
     shares, heats = [], []
     for k, travel in enumerate((0.02, 5.0)):

@@ -264,6 +264,7 @@ def test_a_level_refines_what_errs(level, stated, by_time_step, found):
     assert next_level(level, stated, by_time_step, 0.01) == found
 
 
+@pytest.mark.slow
 def test_a_run_to_an_error_takes_the_parts_that_it_needs(tmp_path, creeping, monkeypatch):
     """The time step's error here is too small to matter: it is told to be 3 % with one part, and half with two."""
 

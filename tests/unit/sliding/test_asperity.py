@@ -37,6 +37,7 @@ def test_limits_are_hertz_with_the_relaxed_and_the_instantaneous_modulus(slides)
         assert s.peak == pytest.approx(2 * 0.01 / (np.pi * half), rel=0.01)
 
 
+@pytest.mark.slow
 def test_an_asperity_far_smaller_than_its_block_is_solved_where_rubber_hardly_relaxes():
     """The first correction is a hundredth of the block's edge and many elements in contact: no tangent may be kept."""
     rubber = filled_rubber()
@@ -73,6 +74,7 @@ def test_bad_values(change):
         cylinder(**change)
 
 
+@pytest.mark.slow
 def test_sliding_in_time_ends_in_the_steady_state():
     passage = slide_in_time(cylinder(), 60.0, fineness=6)
     assert passage.travel[0] == 0.0
