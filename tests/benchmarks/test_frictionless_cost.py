@@ -12,6 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 SUBJECT = Path(__file__).parent / "frictionless.py"
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "MKL_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NGS_NUM_THREADS"), "1")
 KINDS = ("scene", "hand")
@@ -65,6 +67,7 @@ def report(facts, seconds, answers):
     )
 
 
+@pytest.mark.slow
 def test_scene_without_friction_is_the_problem_without_friction(capsys):
     facts, seconds, answers = compare(rounds=2)
     with capsys.disabled():

@@ -41,7 +41,7 @@ def pressed(kinematics, friction, *, force=0.8):
     return problem, contact, term
 
 
-@pytest.mark.parametrize("kinematics", [PlaneStrain(), Axisymmetric()])
+@pytest.mark.parametrize("kinematics", [PlaneStrain(), pytest.param(Axisymmetric(), marks=pytest.mark.slow)])
 def test_far_travel_ends_in_full_sliding_and_back_again(kinematics):
     problem, contact, sticks = pressed(kinematics, StickSlip)
     other, _, slides = pressed(kinematics, FullSliding)

@@ -20,7 +20,7 @@ ASKED = 2e-3
 
 def to(error):
     block = scene("implicit")
-    few = replace(block.program, strokes=4)
+    few = replace(block.program, strokes=3)
     return replace(block, deactivation=None, wear=Wear(), accuracy=Accuracy(error=error), program=few)
 
 

@@ -60,9 +60,8 @@ def test_pressures_given_at_both_ends_of_each_edge_are_found_there(sheet, order)
     assert contact.end_pressures() == pytest.approx(ends, abs=1e-12)
 
 
-@pytest.mark.parametrize(
-    "changes", [(), pytest.param(REMEMBERS, marks=pytest.mark.slow)], ids=["elastic", "with memory"]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize("changes", [(), REMEMBERS], ids=["elastic", "with memory"])
 def test_orders_wear_the_sheet_alike(tmp_path, write_sheet, changes):
     """Order 3 to a thousandth, order 1 to a fiftieth, its contact's ends to an element."""
     found, sheet = {}, read_scene(write_sheet(tmp_path, *FINE, *changes))

@@ -40,7 +40,17 @@ def across(scene):
     return replace(scene, accuracy=Accuracy(across=4.0))
 
 
-@pytest.fixture(params=["plain", "worn surface", "sticking", "elements across", "memory", "torn", "fatigue"])
+@pytest.fixture(
+    params=[
+        "plain",
+        "worn surface",
+        "sticking",
+        "elements across",
+        "memory",
+        "torn",
+        pytest.param("fatigue", marks=pytest.mark.slow),
+    ]
+)
 def scene(request, tmp_path, write_sheet):
     def sheet(*changes):
         return read_scene(write_sheet(tmp_path / "scene", *changes))

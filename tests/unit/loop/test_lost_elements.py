@@ -236,7 +236,8 @@ def torn_whole():
     return run(torn_scene(), figures=False)
 
 
-@pytest.mark.parametrize("stop", [pytest.param(0, marks=pytest.mark.slow), 3])
+@pytest.mark.slow
+@pytest.mark.parametrize("stop", [0, 3])
 def test_interrupted_and_resumed_it_ends_as_uninterrupted(tmp_path, torn_whole, stop):
     """Before and after elements are lost by every cause."""
     torn, whole = torn_scene(), torn_whole

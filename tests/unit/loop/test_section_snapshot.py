@@ -164,7 +164,7 @@ def test_section_without_equilibrium_is_left_out(tmp_path, sheet, monkeypatch):
 
 
 def test_fluid_wets_the_edges_that_it_reaches(tmp_path, seal):
-    scene = replace(seal, accuracy=seal.accuracy.with_tolerances_of(Accuracy.preset("draft")), save=Save())
+    scene = replace(seal, accuracy=Accuracy.preset("draft"), save=Save())
     state = Stepper(scene).start()
     outward, inward = (Section.of(report.section) for report in state.reports)
     assert (outward.fluid_pressure, inward.fluid_pressure) == (0.0, 2.0)

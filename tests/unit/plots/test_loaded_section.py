@@ -119,7 +119,7 @@ ROD = (
 )
 
 
-@pytest.mark.parametrize("scene", ["elements that may be lost", "ring in a bore"])
+@pytest.mark.parametrize("scene", [pytest.param("elements that may be lost", marks=pytest.mark.slow), "ring in a bore"])
 def test_other_scenes_are_drawn(tmp_path, write_sheet, scene):
     if scene == "ring in a bore":
         text = (write_sheet(tmp_path).parent / "sheet.toml").read_text()

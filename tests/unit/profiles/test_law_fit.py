@@ -28,7 +28,7 @@ def fine(tmp_path_factory, write_sheet):
     scene = read_scene(write_sheet(folder))
     scene = replace(
         scene,
-        accuracy=replace(scene.accuracy, patch=0.025, mounting=0.1),
+        accuracy=replace(scene.accuracy, patch=0.05, mounting=0.1),
         program=replace(scene.program, strokes=20),
         wear=replace(scene.wear, step="fixed", max_jump=5),
     )
