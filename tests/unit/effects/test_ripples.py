@@ -70,6 +70,7 @@ def test_margin_of_a_block_in_shear():
     assert friction.margin() > 0
 
 
+@pytest.mark.slow
 def test_ripples_leave_the_resultant_and_the_smooth_pressure_alone(monkeypatch):
     found = []
     for shift in (0.25, 0.0):

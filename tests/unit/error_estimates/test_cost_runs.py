@@ -71,15 +71,18 @@ def few_levels(patch):
     patch.setattr(settings_module, "STRESS", (2.0, 1.0))
 
 
+def study_in(folder, file):
+    with pytest.MonkeyPatch.context() as patch:
+        few_levels(patch)
+        return cost(read_scene(file), budget=AMPLE, folder=folder / "out")
+
+
 @pytest.fixture(scope="module")
 def studied(tmp_path_factory, write_sheet):
     """A study of a few levels, and its scene's file."""
     folder = tmp_path_factory.mktemp("cost")
-    file = write_sheet(folder, *FINE, *JUMPS)
-    with pytest.MonkeyPatch.context() as patch:
-        few_levels(patch)
-        found = cost(read_scene(file), budget=AMPLE, folder=folder / "out")
-    return found, folder / "out", file
+    file = write_sheet(folder, *JUMPS)
+    return study_in(folder, file), folder / "out", file
 
 
 def test_only_knobs_that_the_scene_calls_for(sheet, seal, tmp_path, write_sheet):
@@ -175,7 +178,12 @@ def test_files_of_a_study(studied):
     assert {q.split(" [")[0] for q in found.study.quantities} == {
         *("maximum depth", "worn area", "peak pressure", "roller contact width", "roller friction force")
     }
-    levels = [run for k in range(len(found.study.ladders)) for run in found.study.levels(k).values()]
+
+
+@pytest.mark.slow
+def test_friction_of_each_level_is_coulombs(tmp_path, write_sheet):
+    study = study_in(tmp_path, write_sheet(tmp_path, *FINE, *JUMPS)).study
+    levels = [run for k in range(len(study.ladders)) for run in study.levels(k).values()]
     force = [run.values["roller friction force [N/mm]"] for run in levels]  # choices, too, are run: which, seconds tell
     assert force == pytest.approx([0.05] * len(force), rel=1e-3), "mu F"
 

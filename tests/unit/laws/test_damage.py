@@ -240,6 +240,7 @@ def test_the_filter_finds_living_elements_whose_corners_are_too_sharp():
     assert not DistortionFilter(corner_cosine=float(sharp.max())).finds(cells).any()
 
 
+@pytest.mark.slow
 def test_jumps_tear_what_single_cycles_tear():
     fatigue, _, cells = tired(2, critical=2.0)[0]
     critical = 2.0 * math.sqrt(fatigue[cells.quads].max() / 0.15)  # 0.15 a cycle: torn in the seventh

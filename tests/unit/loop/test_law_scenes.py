@@ -286,6 +286,7 @@ def test_pin_slides_with_the_friction_of_its_speed():
     assert found.surface_friction == pytest.approx(law.mu(0.0, 80.0), rel=0.05)
 
 
+@pytest.mark.slow
 def test_shipped_scene_runs_through_the_four_phases():
     scene = read_scene(PIN.parents[1] / "starving_lubrication" / "scene.toml")
     rows = run(scene, figures=False).recorder.rows

@@ -190,6 +190,7 @@ def test_what_is_stated_is_what_much_finer_steps_show(finished, in_sixteenths, n
     assert 0.5 < finished.summary["error estimates"][by_time(name)] / true < 3.0
 
 
+@pytest.mark.slow
 def test_finer_time_steps_state_less(creeping, finished):
     finer = run(in_parts(creeping, 4), figures=False).summary["error estimates"]
     for name in (AREA, PEAK, FRICTION):
