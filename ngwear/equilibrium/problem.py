@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import ngsolve as ng
 import numpy as np
 from netgen.libngpy._meshing import NgException
 from numpy.typing import NDArray
-from threadpoolctl import ThreadpoolController
 
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns, VolumeTerm
 from ngwear.equilibrium.linear import DirectSolver, Tangent
@@ -20,6 +21,9 @@ from ngwear.fields.displacements import displacements
 from ngwear.fields.kinematics import Kinematics
 from ngwear.fields.material_points import MaterialPoints
 from ngwear.geometry.meshed import Meshed
+
+if TYPE_CHECKING:
+    from threadpoolctl import ThreadpoolController
 
 Array = NDArray[np.float64]
 # As measured on two cores with PARDISO.
@@ -176,7 +180,7 @@ class Problem:
         this one.
         """
         large = self.space.ndof >= THREADED_FROM
-        with _blas().limit(limits=1), ng.TaskManager() if large else nullcontext():
+        with _blas_on_one_thread(), ng.TaskManager() if large else nullcontext():
             yield
 
     def residual(self, out: ng.BaseVector) -> None:
@@ -236,7 +240,15 @@ class Problem:
         return self.solver
 
 
+def _blas_on_one_thread() -> AbstractContextManager[object]:
+    if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # as in the workers: it has no other, and need not be searched
+        return nullcontext()
+    return _blas().limit(limits=1)
+
+
 @lru_cache(maxsize=1)
 def _blas() -> ThreadpoolController:
     """The BLAS of NumPy and SciPy; PARDISO's threads are NGSolve's matter."""
+    from threadpoolctl import ThreadpoolController
+
     return ThreadpoolController().select(internal_api="openblas")

@@ -91,7 +91,10 @@ class Outline:
         self._require_simple()
 
     def _require_simple(self) -> None:
-        from shapely import Polygon
+        turning = self.turning
+        if turning.min() > -1e-9 and abs(turning.sum() - 2 * np.pi) < 1e-6:  # convex but for rounding: cannot cross
+            return
+        from shapely import Polygon  # takes time to load
         from shapely.validation import explain_validity
 
         polygon = Polygon(self.points)

@@ -19,7 +19,7 @@ from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
 
 WIDTH, THICKNESS, RADIUS, DEPTH = 20.0, 2.0, 5.0, 0.30
-PATCH, BOTTOM, COARSE = 0.15, 0.25, 0.6  # element edges [mm]
+PATCH, BOTTOM, COARSE, GRADING = 0.2, 0.3, 1.0, 0.3  # element edges [mm], their growth [-]
 
 
 def main():
@@ -28,7 +28,7 @@ def main():
     top = [(x, THICKNESS) for x in np.linspace(-2.0, 2.0, 28)]
     bottom = [(x, 0.0) for x in np.linspace(-3.5, 3.5, 29)]
     sizes = np.repeat([PATCH, BOTTOM], [len(top), len(bottom)])
-    body = Body(outline, SizeField(np.array(top + bottom), sizes, COARSE, grading=0.2))
+    body = Body(outline, SizeField(np.array(top + bottom), sizes, COARSE, grading=GRADING))
 
     rubber = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1000.0)
     cylinder = Cylinder(centre=(0.0, THICKNESS + RADIUS), radius=RADIUS)
