@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-LOWEST, HIGHEST = 0.05, 8.0  # orders that are told from none at all; no knob has a higher one
+LOWEST, HIGHEST = 0.05, 8.0  # a lower order shows no convergence; no parameter has a higher one
 RATIO_BITS = 60  # halvings: to rounding
 
 

@@ -16,7 +16,7 @@ from ngwear.errors import SceneError
 CONFIRMING, CONFIRMING_RUNS = 0.15, 2.0  # of the budget, or runs of the base: kept for the settings recommended
 FIRST = 0.5  # of what is left: what a first run, and then the scene's own, may take
 OTHERS = 0.5  # of what is left: what ladders other than the mesh's may be expected to take, else on a coarser mesh
-TOGETHER = 0.4  # of what is then left: what a run with all knobs at their finest may take
+TOGETHER = 0.4  # of what is then left: what a run with all parameters at their finest may take
 BEYOND = 30.0  # s: what a run may take that only tells what one takes, where the budget did not even show that
 Measure = Callable[[Setting, float], Measurement]
 

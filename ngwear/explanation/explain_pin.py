@@ -61,7 +61,7 @@ def explain_pin(scene: PinScene, *, assumed: Assumed | None = None) -> dict[str,
             "contact radius, a guess, over thickness [-]": pin.contact_radius / pin.thickness,
             "loss factor at the slowest and the fastest [-]": [float(series.tan_delta(f)) for f in (slow, fast)],
             "shortest time of a turn [s]": turn / max(scene.speeds),
-            "largest error of stress by folding [-]": max(folding.bound for folding in foldings),
+            "largest error of stress by arms left out [-]": max(folding.bound for folding in foldings),
         },
         "arms of the memory": {
             f"{time:.4g} s": f"G/G_inf = {ratio:.4g}, tau V/a = {time * rates[0]:.3g} to {time * rates[1]:.3g}: "

@@ -203,7 +203,7 @@ def _memory_numbers(scene: Scene) -> dict[str, float]:
     return {
         "G0/G of the arms kept [-]": folding.kept.instantaneous,
         "elastic part over long-term stiffness [-]": folding.stiffening,
-        "largest error of stress by folding [-]": folding.bound,
+        "largest error of stress by arms left out [-]": folding.bound,
         "shortest stroke [s]": scene.program.parts * step,
         "shortest time step [s]": step,
         "all strokes [s]": scene.program.duration,

@@ -11,6 +11,7 @@ from contextlib import contextmanager, suppress
 from importlib import import_module
 from multiprocessing import Pipe, get_context, parent_process
 from multiprocessing.connection import Connection
+from queue import SimpleQueue
 from typing import TYPE_CHECKING, Any
 
 from ngwear.errors import NgwearError
@@ -80,14 +81,23 @@ def _work(pipe: Connection, modules: tuple[str, ...]) -> None:
     end_with_parent()
     for module in modules:
         import_module(module)
-    with suppress(EOFError):  # the pipe is closed
-        while True:
-            function, arguments = pipe.recv()
-            try:
-                function(*arguments)
-                failed = False
-            except NgwearError:
-                failed = True
+    calls: SimpleQueue[bytes | None] = SimpleQueue()
+
+    def receive() -> None:  # at once, since a call with much data would stop its sender until this process reads it
+        with suppress(EOFError):  # the pipe is closed
+            while True:
+                calls.put(pipe.recv_bytes())
+        calls.put(None)
+
+    threading.Thread(target=receive, daemon=True).start()
+    while (call := calls.get()) is not None:
+        function, arguments = pickle.loads(call)
+        try:
+            function(*arguments)
+            failed = False
+        except NgwearError:
+            failed = True
+        with suppress(OSError):  # nobody waits any more
             pipe.send(failed)
 
 

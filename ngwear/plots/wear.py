@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 HISTORIES = ("peak pressure [MPa]", "contact width [mm]", "leak pressure [MPa]")  # columns that end so
-COMPANIONS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run with a companion states
+BY_COARSER_RUNS = {"peak pressure [-]", "contact width [-]"}  # errors that only a run beside coarser ones states
 
 
 def plot(folder: Path | str, *, share: tuple[int, int] = (0, 1)) -> list[Path]:
@@ -215,7 +215,7 @@ def history_figure(result: ResultFile) -> Figure:
     endings = [e for e in HISTORIES if any(c.endswith(e) for c in series)]
     figure, axes = new_figure(1 + len(endings), (1.3, *[1] * len(endings)), size=(8, 3.5 + 2.75 * len(endings)))
     depth, error = series["maximum depth [mm]"] * 1e3, series["error estimate of maximum depth [mm]"] * 1e3
-    stated = result.errors if COMPANIONS & result.errors.keys() else {}
+    stated = result.errors if BY_COARSER_RUNS & result.errors.keys() else {}
     if stated:
         error = stated["maximum depth [-]"] * depth
     axes[0].plot(stroke, depth, color="k", lw=1.2, label="maximum")

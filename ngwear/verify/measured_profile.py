@@ -1,4 +1,4 @@
-"""A profile that is made up from a closed form, disturbed as an instrument would, and laid over a run.
+"""A profile that is made up from a closed form, disturbed as an instrument would, and compared with a run.
 
 The run: a cylinder wears into a block with k = 1e-3 mm²/N (``ngwear.verify.worn_cylinder``, on a coarser mesh). The
 profile: that of a part with 1.6 times this rate, once its flat is 2 a = 2.4 mm wide, from the late-time closed form

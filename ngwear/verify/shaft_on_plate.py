@@ -121,7 +121,7 @@ def story(scene: Scene) -> Story:
     """Run a scene to its end, or until it gives up."""
     watch, (spec,) = Stopwatch(), scene.contacts
     radius, friction, rate, force = constants(spec)
-    told = Story(np.zeros_like(GRID), 0.0, 0.0, 0)
+    found = Story(np.zeros_like(GRID), 0.0, 0.0, 0)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # the explicit scheme says itself that it is unstable
         stepper = Stepper(scene)
@@ -133,19 +133,19 @@ def story(scene: Scene) -> Story:
         except (ConvergenceError, GeometryError, MeshError):
             break
         (report,) = state.reports
-        told.profiles.append(report.contacts[SHAFT])
-        told.iterations.append(report.iterations)
+        found.profiles.append(report.contacts[SHAFT])
+        found.iterations.append(report.iterations)
         along = sum(force[0] for force in report.forces.values())
-        zones = told.profile.zones()
+        zones = found.profile.zones()
         ends = [math.asin(end[0] / radius) for zone in zones for end in (zone.start, zone.end)]
         half_angle = 0.5 * (max(ends) - min(ends))
         normal = math.sqrt((force**2 + along**2) / (1 + friction**2))
         sliding = scene.program.slid(state.strokes) - scene.program.slid(before)
-        told.closed_form += rate * sliding * normal / (1 - half_angle**2 / 8)
-    told.depth, told.area, told.strokes = worn_depth(state.contour), state.ledger.removed, state.strokes
-    told.depth_error = abs(state.ledger.depth_error)
-    told.seconds = watch.seconds
-    return told
+        found.closed_form += rate * sliding * normal / (1 - half_angle**2 / 8)
+    found.depth, found.area, found.strokes = worn_depth(state.contour), state.ledger.removed, state.strokes
+    found.depth_error = abs(state.ledger.depth_error)
+    found.seconds = watch.seconds
+    return found
 
 
 def run() -> list[Check]:

@@ -280,6 +280,6 @@ def test_explain_lists_arms_and_what_became_of_them(tmp_path, write_sheet, capsy
     assert "3 arms kept; 1 left out as always relaxed" in told["effects"]["memory"]
     assert "tau/D = 2: kept" in told["arms of the memory"]["1 s"]
     assert "relaxes at once" in told["arms of the memory"]["1e-06 s"]
-    assert 0 < told["numbers"]["largest error of stress by folding [-]"] < 1e-3
+    assert 0 < told["numbers"]["largest error of stress by arms left out [-]"] < 1e-3
     assert main(["explain", str(file)]) == OK
     assert "arms of the memory:" in capsys.readouterr().out

@@ -303,4 +303,4 @@ def test_explain_says_how_long_a_step_is(creeping):
     numbers = explain(in_parts(creeping, 2))["numbers"]
     assert numbers["shortest stroke [s]"] == pytest.approx(0.5)
     assert numbers["shortest time step [s]"] == pytest.approx(0.25)
-    assert math.isfinite(numbers["largest error of stress by folding [-]"])
+    assert math.isfinite(numbers["largest error of stress by arms left out [-]"])

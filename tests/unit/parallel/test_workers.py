@@ -82,3 +82,13 @@ def test_a_worker_that_dies_at_its_work_has_failed(worker):
     worker.do(os.abort)
     assert not worker.did()
     assert not worker.idle
+
+
+def test_a_call_with_much_data_does_not_wait_for_earlier_calls(worker):
+    worker.do(time.sleep, 0.0)
+    assert worker.did()  # it has started
+    worker.do(time.sleep, 3.0)
+    begun = time.monotonic()
+    worker.do(len, bytes(20_000_000))
+    assert time.monotonic() - begun < 1.5
+    assert worker.did()

@@ -141,7 +141,7 @@ def test_arms_that_relax_within_a_column_are_folded_and_told(tmp_path, capsys):
     assert "1 to 1 of 2 arms" in found["effects"]["memory"]
     assert "relaxes at once" in found["arms of the memory"]["1e-08 s"]
     assert found["arms of the memory"]["0.001 s"].endswith(": kept")
-    assert 0 < found["numbers"]["largest error of stress by folding [-]"] <= 1e-3
+    assert 0 < found["numbers"]["largest error of stress by arms left out [-]"] <= 1e-3
 
 
 @pytest.mark.slow
