@@ -42,9 +42,9 @@ from ngwear.scene.scene import Scene
 
 LEVELS, NOTES = "levels", "levels.json"  # in the run's folder: what earlier levels have left, and what is known of them
 # Settled on the rod seal, which errs by 0.43 % of its depth on 4, 1.3 % on 2.5 (adaptive_against_fixed.py), and states
-# 1.7 % of its peak on 6. What is stated decides; a level too coarse costs another one.
+# 1.4 % of its peak on 5. What is stated decides; a level too coarse costs another one.
 FIRST, AT = 4.0, 0.01  # elements across of the first level when so much error of the depth is asked for
-FIRST_PEAK, AT_PEAK = 6.0, 0.1  # when so much of the peak pressure is
+FIRST_PEAK, AT_PEAK = 5.0, 0.1  # when so much of the peak pressure is
 COARSEST_FIRST, FINEST_FIRST = 2.5, 32.0  # below, coarser runs hardly differ; above, a first level is dear
 MOST_STEPS = 2  # levels at once: a coarse level's word on its error is not worth more
 HALVINGS, MOST_PARTS = 2, 16  # of the time step at once; parts of a stroke, each with a solve
@@ -54,7 +54,7 @@ BY_TIME = f"{DEPTH[:-4]} {BY_TIME_STEP}"
 
 
 def first_across(error: float, peak_error: float | None = None) -> float:
-    """Elements across of the first level: 4 for 1 % error of depth, 6 for 10 % of peak pressure; from 2.5 to 32.
+    """Elements across of the first level: 4 for 1 % error of depth, 5 for 10 % of peak pressure; from 2.5 to 32.
 
     Half of the error needs twice as many.
     """

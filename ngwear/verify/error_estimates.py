@@ -1,7 +1,7 @@
 """The errors that runs state of themselves against true ones: the shipped scenes.
 
-A run states the error that two coarser ones show (``ngwear.error_estimates.coarser_runs``); the pin on a plate, what the
-coarser of its two meshes shows. True is what it differs by from a run with elements of a quarter of the edge
+A run states the error that two coarser ones show (``ngwear.error_estimates.coarser_runs``); the pin on a plate, what
+the coarser of its two meshes shows. True is what it differs by from a run with elements of a quarter of the edge
 (``FINER``), and jumps that may err by a quarter as much, read at the same places and in the same mean square; of the
 pin, and of the leak pressure, of a half. The finer run errs, too: of an error of first order, one with a quarter of
 everything shows 3/4 and one with a half 1/2, so that an exact estimate would have an effectivity of 1.3 and 2; of
