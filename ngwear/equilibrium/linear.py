@@ -39,12 +39,12 @@ class Tangent:
 
     Parameters
     ----------
-    outline : ng.BaseMatrix
+    outline : ng.la.SparseMatrixd
     unknowns : array of int, shape (elements, n)
         Numbers of the unknowns of each element.
     """
 
-    def __init__(self, outline: ng.BaseMatrix, unknowns: NDArray[np.int64]) -> None:
+    def __init__(self, outline: ng.la.SparseMatrixd, unknowns: NDArray[np.int64]) -> None:
         size = outline.height
         _, columns, rows = (np.array(part).astype(np.int64) for part in outline.CSR())
         edge = np.repeat(np.arange(size), np.diff(rows)) * size + columns
@@ -56,7 +56,7 @@ class Tangent:
         count = len(places)
         entries = Array_I_S(count), Array_I_S(count), Array_D_S(count)  # Python lists are very slow
         for array, numbers in zip(entries, (places // size, places % size, 0.0), strict=True):
-            array.NumPy()[:] = numbers
+            array.NumPy()[:] = numbers  # pyright: ignore[reportAttributeAccessIssue] NGSolve's stubs lack it
         self.matrix = ng.la.SparseMatrixd.CreateFromCOO(*entries, size, size)
 
     def fill(self, outline: ng.BaseMatrix, elements: NDArray[np.float64]) -> None:
@@ -81,7 +81,7 @@ class DirectSolver:
 
     Parameters
     ----------
-    matrix : ng.BaseMatrix
+    matrix : ng.la.SparseMatrixd
     free : ng.BitArray
         Unknowns that are not prescribed.
     symmetric : bool
@@ -89,7 +89,7 @@ class DirectSolver:
         Unknowns with a stiffness on the diagonal (displacements); the others are scaled by their coupling to these.
     """
 
-    def __init__(self, matrix: ng.BaseMatrix, free: ng.BitArray, *, symmetric: bool, stiff: slice) -> None:
+    def __init__(self, matrix: ng.la.SparseMatrixd, free: ng.BitArray, *, symmetric: bool, stiff: slice) -> None:
         self.matrix, self.free = matrix, free
         self._mask = np.fromiter(free, dtype=bool, count=len(free))
         if has_pardiso():

@@ -197,7 +197,7 @@ class Problem:
         if self._imbalance is not None:
             out.data -= self.parameters[IMBALANCE].Get() * self._imbalance
 
-    def assemble(self) -> ng.BaseMatrix:
+    def assemble(self) -> ng.la.SparseMatrixd:
         """The tangent at the present state."""
         self.form.AssembleLinearization(self.state.vec)
         if self._points is None:

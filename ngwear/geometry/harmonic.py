@@ -17,12 +17,12 @@ class HarmonicFill:
 
     Parameters
     ----------
-    matrix : ng.BaseMatrix
+    matrix : ng.la.SparseMatrixd
         Symmetric, positive definite on the free unknowns.
     free : array of bool
     """
 
-    def __init__(self, matrix: ng.BaseMatrix, free: NDArray[np.bool_]) -> None:
+    def __init__(self, matrix: ng.la.SparseMatrixd, free: NDArray[np.bool_]) -> None:
         from scipy.sparse import csr_array
         from scipy.sparse.linalg import splu  # slow to load, and only bodies that move need it
 
