@@ -41,8 +41,8 @@ def on_rod(interference, mu) -> list[Finding]:
     grown = interference * ring.INNER
     advance(problem, {"rod approach [mm]": grown})
     expected = expanding_pressure(RUBBER.shear_modulus, ring.INNER, ring.OUTER, ring.INNER + grown)
-    found = float(rod.force()[1]) / (2 * np.pi * (ring.INNER + grown) * ring.LENGTH)
-    return [*body(problem), *pressure(rod), near("pressure on the rod", found, expected, 1e-4)]
+    found = float(shaft.force()[1]) / (2 * np.pi * (ring.INNER + grown) * ring.LENGTH)
+    return [*body(problem), *pressure(shaft), near("pressure on the rod", found, expected, 1e-4)]
 
 
 def turned_round(first, second) -> list[Finding]:

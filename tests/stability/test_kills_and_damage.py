@@ -21,6 +21,7 @@ from ngwear.loop.checkpoint import load
 from ngwear.loop.run import run
 from ngwear.plots.wear import plot
 from ngwear.results.recorder import Folder
+from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.read_scene import read_scene
 
 CLI = "import sys; from ngwear.cli import main; sys.exit(main(sys.argv[1:]))"
@@ -63,7 +64,8 @@ def test_killed_again_and_again_it_still_gets_there(tmp_path, write_sheet):
 @pytest.mark.skipif(not has_pardiso(), reason="only PARDISO (the extra 'fast') repeats itself bit for bit")
 def test_the_shipped_seal_killed_and_resumed_ends_bit_for_bit_the_same(tmp_path, seal):
     """Meshes, jumps and all: one digit lost in a checkpoint and a mesh-size decision goes the other way."""
-    scene = replace(seal, program=replace(seal.program, strokes=60), save=replace(seal.save, strokes=()))
+    few = replace(seal.program, strokes=60)
+    scene = replace(seal, accuracy=Accuracy(), program=few, save=replace(seal.save, strokes=()))
     whole = run(scene, figures=False)
     out = tmp_path / "out"
 

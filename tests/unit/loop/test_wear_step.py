@@ -10,6 +10,7 @@ from ngwear.geometry.outline import Outline
 from ngwear.loop.remeshing import _Interpolation
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.wear_step import WearStep
+from ngwear.scene.accuracy import Accuracy
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
 
 
@@ -71,7 +72,7 @@ def test_a_new_outline_keeps_the_shape_of_values():
 @pytest.fixture(scope="module")
 def coarse_seal(seal):
     """The shipped seal with half an element across the lip after thirty strokes, and the strokes after each step."""
-    coarse = replace(seal, accuracy=replace(seal.accuracy, patch=0.04, mounting=0.04))
+    coarse = replace(seal, accuracy=Accuracy(patch=0.04, mounting=0.04))
     stepper = Stepper(replace(coarse, save=replace(seal.save, strokes=())))
     state, done = stepper.start(), [0]
     while state.strokes < 30 or len(done) <= 5:
