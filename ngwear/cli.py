@@ -41,6 +41,7 @@ def _parser() -> argparse.ArgumentParser:
     run.set_defaults(do=_run)
     verify = commands.add_parser("verify", help="compare with closed-form solutions and published results")
     verify.add_argument("cases", nargs="*", metavar="CASE")
+    verify.add_argument("--list", action="store_true", help="list the cases and their seconds, and run none")
     verify.add_argument("--json", action="store_true")
     keeps = "folder for the runs of torn_seal (hours), to continue them; use a new folder after a change of the code"
     verify.add_argument("--out", type=Path, metavar="DIR", help=keeps)
@@ -167,8 +168,11 @@ def _verify(options: argparse.Namespace) -> int:
     """Print each check as soon as it is done, so that none is lost if the process is stopped."""
     from tqdm import tqdm
 
-    from ngwear.verify import checks_of, chosen
+    from ngwear.verify import checks_of, chosen, listing
 
+    if options.list:
+        print("\n".join(listing()))
+        return OK
     passed, opening = True, "["
     with tqdm(chosen(options.cases or None), unit="case", disable=not sys.stderr.isatty(), leave=False) as bar:
         for name in bar:

@@ -145,9 +145,9 @@ def _heat(scene: Scene, strips: list[Strip], assumed: Assumed) -> Verdict:
     if not matters:
         limit = f"below the {heat.LIMIT:g} K that change stiffness, losses and friction of rubber"
     words = (
-        f"estimated +{found:.2g} K of flash temperature at most: {limit}. Highest pressure of {len(hottest)} zones: "
-        f"{_where(strip)}, mu p v = {mu:.3g} x {strip.pressure:.3g} MPa x {speed:.4g} mm/s, {strip.width:.3g} mm wide; "
-        f"{grounds}"
+        f"estimated +{found:.2g} K of flash temperature at most: {limit}. Highest pressure of {len(hottest)} "
+        f"{'zone' if len(hottest) == 1 else 'zones'}: {_where(strip)}, mu p v = {mu:.3g} x "
+        f"{strip.pressure:.3g} MPa x {speed:.4g} mm/s, {strip.width:.3g} mm wide; {grounds}"
     )
     if all(stroke.speed is not None for stroke in scene.program.cycle):
         names = {strip.contact.name for strip in strips}

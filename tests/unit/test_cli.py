@@ -214,3 +214,8 @@ def test_help_and_bad_scenes_load_no_solver(tmp_path):
 def test_importing_the_package_loads_nothing_heavy():
     code = "import sys, ngwear, ngwear.scene.scene; sys.exit('ngsolve' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code]).returncode == 0
+
+
+def test_verify_lists_its_cases_and_runs_none(capsys):
+    assert main(["verify", "--list"]) == OK
+    assert "torn_seal" in capsys.readouterr().out
