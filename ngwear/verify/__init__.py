@@ -26,7 +26,8 @@ class Case:
     module : str
         Whose ``run()`` makes the checks.
     seconds : float
-        Processor time of ``ngwear verify CASE``, all processes, measured on one machine, of the longest to two digits [s]; 0 if not measured.
+        Processor time of ``ngwear verify CASE``, all processes, measured on one machine, of the longest to two
+        digits [s]; 0 if not measured.
     compares : str
         What with what, in one line.
     quick : bool
