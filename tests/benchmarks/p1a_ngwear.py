@@ -19,7 +19,7 @@ from ngwear.materials import MooneyRivlin
 from ngwear.surfaces import Cylinder
 
 WIDTH, THICKNESS, RADIUS, DEPTH = 20.0, 2.0, 5.0, 0.30
-PATCH, BOTTOM, COARSE, GRADING = 0.2, 0.3, 1.0, 0.3  # element edges [mm], their growth [-]
+PATCH, BOTTOM, COARSE, GRADING = 0.2, 0.3, 1.0, 0.4  # element edges [mm], their growth [-]
 
 
 def main():
