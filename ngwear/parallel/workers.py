@@ -81,17 +81,19 @@ def _work(pipe: Connection, modules: tuple[str, ...]) -> None:
     end_with_parent()
     for module in modules:
         import_module(module)
-    calls: SimpleQueue[bytes | None] = SimpleQueue()
+    calls: SimpleQueue[tuple[Callable[..., object], tuple[Any, ...]] | None] = SimpleQueue()
 
     def receive() -> None:  # at once, since a call with much data would stop its sender until this process reads it
-        with suppress(EOFError):  # the pipe is closed
-            while True:
-                calls.put(pipe.recv_bytes())
-        calls.put(None)
+        try:
+            with suppress(EOFError):  # the pipe is closed
+                while True:
+                    calls.put(pipe.recv())
+        finally:
+            calls.put(None)
 
     threading.Thread(target=receive, daemon=True).start()
     while (call := calls.get()) is not None:
-        function, arguments = pickle.loads(call)
+        function, arguments = call
         try:
             function(*arguments)
             failed = False
