@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MARKERS = ("o", "s", "^", "D", "v", "P")
+SIDES = (  # where a ladder's labels stand beside their points [points], so that those of two ladders do not overlap
+    ((0, 6), "center", "bottom"),
+    ((7, 0), "left", "center"),
+    ((-7, 0), "right", "center"),
+    ((0, -6), "center", "top"),
+)
 LEAST = 1e-5  # errors below, or none at all, are drawn here: a hundredth of the smallest target
 
 
@@ -110,13 +116,12 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
         colour, marker = COLOURS[k % len(COLOURS)], MARKERS[k % len(MARKERS)]
         reference = f"against {ladder.labels[max(levels)]}{observed}"
         axis.loglog(x, y, marker + "-", color=colour, ms=6, lw=1.0, label=f"{ladder.name}, {reference}")
-        for n, (i, place) in enumerate(zip(others, zip(x, y, strict=True), strict=True)):
+        offset, across, along = SIDES[k % len(SIDES)]
+        for i, *place in zip(others, x, y, strict=True):
             text = ladder.labels[i].removeprefix("wear_error ").removeprefix("stress_error ")
             own = i == ladder.own and with_level(study.base, k, i) in study.runs
-            foot, top = n + 1 < len(y) and y[n] < y[n + 1], n > 0 and y[n - 1] < y[n]
-            below = foot or (i % 2 == 1 and not top)  # labels must not overlap each other or the line
             axis.annotate(
-                text, place, xytext=(5, -11 if below else 5), textcoords="offset points", fontsize=7.5, color=colour,
+                text, place, xytext=offset, textcoords="offset points", ha=across, va=along, fontsize=7.5, color=colour,
                 fontweight="bold" if own else "normal",
             )  # fmt: skip
     axis.set_ylabel("relative difference from the finest run [-]")

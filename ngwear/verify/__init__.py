@@ -126,7 +126,7 @@ CASES: dict[str, Case] = {
         quick=True,
     ),
     "wear_laws": Case(
-        "ngwear.verify.wear_laws", 0, "columns and a cylinder worn by laws beyond Archard's with closed forms"
+        "ngwear.verify.wear_laws", 61, "columns and a cylinder worn by laws beyond Archard's with closed forms"
     ),
     "notched_strip": Case(
         "ngwear.verify.notched_strip", 12, "bars that tear one by one, and a crack, with hand calculations"
@@ -164,7 +164,7 @@ CASES: dict[str, Case] = {
         "ngwear.verify.rod_seal", 41, "the shipped rod seal with what its source describes, and its books"
     ),
     "rod_seal_jumps": Case(
-        "ngwear.verify.rod_seal_jumps", 0, "the rod seal by cycle jumps with each of its 200 strokes solved"
+        "ngwear.verify.rod_seal_jumps", 140, "the rod seal by cycle jumps with each of its 200 strokes solved"
     ),
     "error_estimates": Case(
         "ngwear.verify.error_estimates", 0, "the errors that shipped scenes state with what finer runs show"

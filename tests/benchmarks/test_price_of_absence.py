@@ -16,6 +16,7 @@ def told():
     return price_of_absence.compare_facts(0.45)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effect", price_of_absence.QUICK)
 def test_what_is_taken_out_leaves_nothing(effect, told):
     never, removed = told["never"][effect], told["removed"][effect]

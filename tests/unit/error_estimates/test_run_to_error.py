@@ -57,6 +57,7 @@ def test_the_next_level_by_what_one_states(across, stated, error, found):
     assert next_across(across, stated, error) == found
 
 
+@pytest.mark.slow
 def test_levels_are_run_until_one_states_less(tmp_path, coarse_first):
     result = run_to_error(to(ASKED), out=tmp_path)
     levels = result.summary["levels"]
