@@ -117,7 +117,7 @@ def _draw_ladders(axis: Axes, study: Study) -> None:
         reference = f"against {ladder.labels[max(levels)]}{observed}"
         axis.loglog(x, y, marker + "-", color=colour, ms=6, lw=1.0, label=f"{ladder.name}, {reference}")
         offset, across, along = SIDES[k % len(SIDES)]
-        for i, *place in zip(others, x, y, strict=True):
+        for i, place in zip(others, zip(x, y, strict=True), strict=True):
             text = ladder.labels[i].removeprefix("wear_error ").removeprefix("stress_error ")
             own = i == ladder.own and with_level(study.base, k, i) in study.runs
             axis.annotate(
