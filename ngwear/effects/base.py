@@ -96,6 +96,9 @@ class Term(abc.ABC):
     def gather(self) -> None:  # noqa: B027 - most terms need only local values
         """Before each residual, compute from the present state what is not local to one element."""
 
+    def limit(self, correction: Array) -> None:  # noqa: B027 - most terms bear any displacement
+        """Shorten a correction of the displacement, to be subtracted from the state, in place."""
+
     def prepare(self) -> None:  # noqa: B027 - most terms fix nothing
         """Before a solve, compute from its start state the quantities that stay fixed in it."""
 

@@ -162,10 +162,13 @@ class OutlineContact(UnilateralContact):
     def peak(self) -> float:
         return float(self.profile().pressure.max(initial=0.0))
 
+    def ends_in_frame(self) -> Array:
+        """Coordinates X + u of both ends of each mesh edge in the frame of the surface; shape (2, m, 2) [mm]."""
+        return np.array([self._sample(ng.CF(p)) for p in self.place(self._state)])
+
     def along(self) -> Array:
         """Coordinates of both ends of each mesh edge along the surface, in its own frame; shape (m, 2) [mm]."""
-        place = [self._sample(ng.CF(p)) for p in self.place(self._state)]
-        return self.surface.along(*place) + self.turned
+        return self.surface.along(*self.ends_in_frame()) + self.turned
 
     def imprint(self) -> tuple[Array, Array]:
         """Where along the surface each mesh edge touches it, and the pressure on it; each of shape (m, 2) [mm], [MPa].

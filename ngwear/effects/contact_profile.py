@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,15 +26,15 @@ class Zone:
         Largest Cauchy pressure [MPa].
     width : float
         Deformed length along the outline [mm].
-    nodes : slice
-        Nodes that carry pressure.
+    nodes : array of int
+        Nodes that carry pressure, along the outline.
     """
 
     start: Array
     end: Array
     peak: float
     width: float
-    nodes: slice
+    nodes: NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -169,9 +169,14 @@ class ContactProfile:
         """Connected pieces where the pressure exceeds ``threshold`` times its maximum."""
         p = self.pressure
         on = p > max(threshold * p.max(initial=0.0), 1e-12)  # a thousandth: what the mesh makes of nothing at an end
+        if on.any() and on[0] and on[-1] and not on.all() and self._closes():  # a zone across the outline's first point
+            off = int(np.argmin(on))
+            zones = self._from(off).zones(threshold=threshold)
+            return [replace(zone, nodes=(zone.nodes + off) % len(p)) for zone in zones]
         joined = np.zeros(len(p) + 1, dtype=bool)  # whether a mesh edge joins node i - 1 to node i
         joined[self.edges.max(axis=1)[np.abs(np.diff(self.edges, axis=1).ravel()) == 1]] = True
-        zones, start = [], None
+        zones = []
+        start: int | None = None
         for i in range(len(p) + 1):
             inside = i < len(p) and on[i]
             if start is not None and not (inside and joined[i]):
@@ -181,12 +186,22 @@ class ContactProfile:
                 start = i
         return zones
 
+    def _closes(self) -> bool:
+        """Whether a mesh edge joins the last node to the first: the contact runs around the whole outline there."""
+        return bool((np.sort(self.edges, axis=1) == (0, len(self.t) - 1)).all(axis=1).any())
+
+    def _from(self, first: int) -> ContactProfile:
+        """The same profile with another first node."""
+        k = len(self.t)
+        values = {f.name: np.roll(getattr(self, f.name), -first, axis=0) for f in fields(self)}
+        return replace(self, **(values | {"edges": (self.edges - first) % k, "mean": self.mean}))
+
     def _zone(self, a: int, b: int) -> Zone:
         start, end = self._edge(a, -1), self._edge(b - 1, 1)
         inner = self.place[a:b]
         path = np.vstack([start, inner, end]) if b - a > 1 else np.vstack([start, end])
         width = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-        return Zone(start, end, float(self.pressure[a:b].max()), width, slice(a, b))
+        return Zone(start, end, float(self.pressure[a:b].max()), width, np.arange(a, b))
 
     def _edge(self, node: int, step: int) -> Array:
         """Where the gap closes beyond the outermost loaded node.

@@ -9,6 +9,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array
 from ngwear.effects.contact import OutlineContact
+from ngwear.effects.rigid_motion import RigidMotion
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
 
@@ -29,7 +30,13 @@ def diagnosis(problem: Problem) -> str:
 
 def _unheld(problem: Problem) -> str:
     """Rigid motions of the part, and surfaces under force, that no support, contact or stress resists."""
+    for term in problem.terms:
+        if isinstance(term, RigidMotion):
+            term.strength.Set(0.0)
     matrix, vector = problem.assemble(), problem.state.vec
+    for term in problem.terms:
+        if isinstance(term, RigidMotion):
+            term.strength.Set(1.0)
     held = ~np.fromiter(problem.free, dtype=bool, count=len(vector))
     diagonal = np.abs(np.array([matrix[i, i] for i in range(len(vector))]))
     contacts = [t for t in problem.terms if isinstance(t, UnilateralContact) and t.force_controlled]

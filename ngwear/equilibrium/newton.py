@@ -136,6 +136,7 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         if not report.linear_residual < RESIDUAL_TOLERANCE:
             report.outcome = Outcome.SINGULAR
             break
+        problem.limit(correction)
         before = solver.scaled_norm(residual) if options.reuse else 0.0
         step, trial.data = 1.0, vector
         for _ in range(HALVINGS):

@@ -197,6 +197,11 @@ class Problem:
         if self._imbalance is not None:
             out.data -= self.parameters[IMBALANCE].Get() * self._imbalance
 
+    def limit(self, correction: ng.BaseVector) -> None:
+        """Shorten a correction, to be subtracted from the state, where a term bounds its displacement; in place."""
+        for term in self.terms:
+            term.limit(correction.FV().NumPy()[self.part(DISPLACEMENT)])
+
     def assemble(self) -> ng.la.SparseMatrixd:
         """The tangent at the present state."""
         self.form.AssembleLinearization(self.state.vec)
@@ -215,6 +220,12 @@ class Problem:
         responses = [term.response(strain, tangent=tangent) for term in self._volume]
         slopes = (slope for _, slope in responses if slope is not None)
         return sum((stress for stress, _ in responses), np.zeros(())), sum(slopes, np.zeros(()))
+
+    def least_jacobian(self) -> tuple[float, Array]:
+        """Least J of the present state at the material points [-], and the centre of its element [mm]."""
+        xx, xy, yx, yy, hoop = np.moveaxis(self.points.strain(self.state.vec.FV().NumPy())[..., :5], -1, 0)
+        jacobian = ((1 + xx) * (1 + yy) - xy * yx) * (1 + hoop)
+        return float(jacobian.min()), self.points.centres[int(jacobian.min(axis=1).argmin())]
 
     def stress(self) -> tuple[Array, Array]:
         """Strains of the present state at the material points, and the stress of all terms conjugate to them [MPa]."""

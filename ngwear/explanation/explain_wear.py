@@ -13,6 +13,7 @@ from ngwear.loop.law_changes import friction_range
 from ngwear.materials import Folding
 from ngwear.scene.contact import Contact
 from ngwear.scene.deactivation import Deactivation
+from ngwear.scene.holding import free_directions
 from ngwear.scene.scene import Scene
 from ngwear.wear.archard import critical_distance
 
@@ -98,6 +99,9 @@ def _present(scene: Scene) -> dict[str, str]:
             present["fluid pressure"] += (
                 "; no stroke has a pressure: without [fluid] the result is the same in less time"
             )
+    if free := free_directions(scene):
+        along = " and ".join("xy"[axis] for axis in free)
+        present["room to move"] = f"nothing holds the part along {along}: it moves until a surface stops it"
     if scene.worn_edges:
         laws = [c.wear_law.words if c.wear_law else "Archard" for c in scene.contacts if c.wears]
         how = f"{scene.wear.scheme}, step '{scene.wear.step}', new meshes '{scene.wear.remesh}'"

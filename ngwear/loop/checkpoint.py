@@ -11,6 +11,7 @@ from ngwear.geometry.body import Body
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import SizeField
+from ngwear.loop.solution_checks import Finding
 from ngwear.loop.state import LastWear, Ledger, Phase, State, StrokeReport
 from ngwear.results.recorder import Folder, Recorder
 from ngwear.results.result_file import Snapshot
@@ -21,6 +22,7 @@ from ngwear.wear.jump_control import JumpControl
 
 FORMAT = Format("checkpoint", 2, "remove the folder and run again, or give another one")  # 1: a pickle
 PLAIN = (
+    Finding,
     Accuracy,
     Cells,
     ContactProfile,

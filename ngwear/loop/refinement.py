@@ -134,8 +134,8 @@ def element_edges(profile: ContactProfile, patch: float, across: float | None) -
     """Element edge at each node of a contact, by the width of the nearest zone, shape (k,) [mm]."""
     if across is None or not (zones := profile.zones()):
         return np.full(len(profile.t), patch)
-    nodes = np.concatenate([np.arange(zone.nodes.start, zone.nodes.stop) for zone in zones])
-    edges = np.concatenate([np.full(zone.nodes.stop - zone.nodes.start, zone.width / across) for zone in zones])
+    nodes = np.concatenate([zone.nodes for zone in zones])
+    edges = np.concatenate([np.full(len(zone.nodes), zone.width / across) for zone in zones])
     nearest = np.abs(profile.t[:, None] - profile.t[nodes]).argmin(axis=1)
     return np.clip(edges[nearest], NARROWEST * patch, patch)
 
@@ -163,6 +163,8 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
         off = stress[..., :5] - points.recovered(stress[..., :5])
         error = np.sqrt((points.volumes * (off**2).sum(axis=-1)).sum(axis=1) / (2 * elasticity.material.shear_modulus))
         energy = (points.volumes * elasticity.energy(strain)).sum()
+        if energy == 0.0:  # an unloaded part requires nothing
+            continue
         share = tolerance * np.sqrt(energy / len(edge))
         edge = np.minimum(edge, points.edges * (share / np.maximum(error, 1e-12 * share)) ** power)
     return points.centres, np.maximum(edge, accuracy.lengths.patch)

@@ -17,6 +17,7 @@ from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.laws import FrictionLaw
 from ngwear.scene.contact import Contact
+from ngwear.scene.holding import free_directions
 from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
@@ -40,6 +41,8 @@ class Stage:
     frictions : dict of str to Friction
         All contacts with friction; ``sticking`` are those with stick and slip, ``sliding`` those in full sliding.
     fluid : FluidPressure or None
+    floats : tuple of int
+        Components of the displacement in which nothing holds the part (``ngwear.scene.holding``).
     memory : StrokeMemory or None
     problem : Problem
 
@@ -87,6 +90,11 @@ class Stage:
         terms = [self.elasticity, *self.contacts.values(), *self.frictions.values()]
         if self.fluid is not None:
             terms.append(self.fluid)
+        self.floats = free_directions(scene)
+        if self.floats:
+            from ngwear.effects.rigid_motion import RigidMotion
+
+            terms.append(RigidMotion(self.floats, tuple(self.contacts.values()), modulus=modulus))
         self.memory: StrokeMemory | None = None
         if background is not None and (arms := scene.arms) is not None:
             from ngwear.effects.stroke_memory import StrokeMemory
@@ -167,25 +175,36 @@ class Stage:
         incompressible ring, so that this guess has no volumetric strain. The equilibrium from there takes a fifth of
         the iterations of mounting by interference from first touch.
         """
-        if not self.scene.axisymmetric:
-            return False
-        shafts = [c for c in self.scene.contacts if c.force is None and c.surface.approach[1] > 0.5]
-        growth = 0.0
-        for spec in shafts:
-            overlap = self._overlap(spec)
-            radius = float(self.body.contour.points[self._clearance(spec)[1], 1])
-            growth = max(growth, (radius + overlap) ** 2 - radius**2)
+        growth = self._growth()
         if growth == 0.0:
             return False
         self.problem.fields[DISPLACEMENT].Set(ng.CF((0, (ng.y**2 + growth) ** 0.5 - ng.y)))
         return True
 
-    def first_touch(self) -> dict[str, float]:
-        """Loads before mounting: surfaces that overlap the part are moved back until they just touch it."""
+    def _growth(self) -> float:
+        """Increase of r² [mm²] at which an axisymmetric part clears its shafts; 0 if no shaft overlaps it."""
+        growth = 0.0
+        if not self.scene.axisymmetric:
+            return growth
+        for spec in self.scene.contacts:
+            if spec.force is None and spec.surface.approach[1] > 0.5:
+                overlap = self._overlap(spec)
+                radius = float(self.body.contour.points[self._clearance(spec)[1], 1])
+                growth = max(growth, (radius + overlap) ** 2 - radius**2)
+        return growth
+
+    def first_touch(self, *, stretched: bool = False) -> dict[str, float]:
+        """Loads before mounting: surfaces that overlap the part are moved back until they just touch it.
+
+        ``stretched``: the part as ``stretched_guess`` gives it, which clears its shafts.
+        """
+        points = self.body.contour.points.copy()
+        if stretched:
+            points[:, 1] = np.sqrt(points[:, 1] ** 2 + self._growth())
         loads: dict[str, float] = {}
         for spec in self.scene.contacts:
             contact = self.contacts[spec.name]
-            overlap = self._overlap(spec)
+            overlap = self._overlap(spec, points)
             if spec.force is None:
                 loads |= dict.fromkeys(contact.loads, -overlap)
             else:
@@ -196,11 +215,12 @@ class Stage:
     def mounted_loads(self) -> dict[str, float]:
         """Loads of the mounted part before the first stroke: no fluid pressure, no sliding.
 
-        Full sliding has no state at rest: such a surface is mounted sliding, except if the rubber may tear.
+        Full sliding has no state at rest: such a surface is mounted sliding, except if the rubber may tear, or if
+        nothing holds the part, which friction would drag along.
         """
         loads = self.stroke_loads(self.scene.program.cycle[0])
         for friction in self.frictions.values():
-            if friction.remembers or self.scene.deactivation is not None:
+            if friction.remembers or self.scene.deactivation is not None or self.floats:
                 loads |= dict.fromkeys(friction.loads, 0.0)
         if self.fluid is not None:
             loads |= dict.fromkeys(self.fluid.loads, 0.0)
@@ -243,20 +263,22 @@ class Stage:
             f"contact '{spec.name}'.surface", spec.surface, "does not meet its edges along its direction of approach"
         )
 
-    def _overlap(self, spec: Contact) -> float:
-        """Distance by which the surface must move back along its approach to clear the part [mm]."""
-        gap, _ = self._clearance(spec)
-        if gap >= 0:
-            return 0.0
-        ax, ay = spec.surface.approach
+    def _overlap(self, spec: Contact, points: Array | None = None) -> float:
+        """Distance by which the surface must move back along its approach to clear the part [mm].
+
+        ``points`` of the outline as it stands, shape (n, 2); default: undeformed.
+        """
         contour = self.body.contour
         mine = contour.on(spec.edges)
-        x, y = contour.points[mine | np.roll(mine, 1)].T
+        x, y = (contour.points if points is None else points)[mine | np.roll(mine, 1)].T
+        ax, ay = spec.surface.approach
         low, high = 0.0, float(np.ptp(contour.points, axis=0).max())
 
         def smallest(retreat: float) -> float:
             return float(spec.surface.gap(x + retreat * ax, y + retreat * ay).min())
 
+        if smallest(0.0) >= 0:
+            return 0.0
         if smallest(high) < 0:
             raise SceneError(
                 f"contact '{spec.name}'.surface",

@@ -14,6 +14,7 @@ from ngwear.effects.contact_profile import ContactProfile
 from ngwear.equilibrium.stepping import Work
 from ngwear.geometry.cells import Cells, Fate
 from ngwear.geometry.outline import Outline
+from ngwear.loop.solution_checks import Finding
 from ngwear.loop.stage import Stage
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
@@ -258,6 +259,8 @@ class StrokeReport:
         Displacement of their points and stresses in them at equilibrium.
     section : dict of str to array
         The loaded section (``ngwear.loop.section_snapshot``) at strokes that are saved, else empty.
+    findings : tuple of Finding
+        What a reader must know of this solve (``ngwear.loop.solution_checks``).
     """
 
     phase: int
@@ -278,3 +281,4 @@ class StrokeReport:
     cells: Cells | None = None
     loaded: dict[str, Array] = field(default_factory=dict)
     section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
+    findings: tuple[Finding, ...] = ()

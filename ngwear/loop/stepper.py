@@ -20,6 +20,7 @@ from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unwor
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
 from ngwear.loop.section_snapshot import section_snapshot
+from ngwear.loop.solution_checks import findings
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.wear_step import WearStep
@@ -335,13 +336,15 @@ class Stepper:
         """Report of the stroke's equilibrium, before its wear."""
         stage = state.stage
         kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
+        profiles = {spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed}
+        forces = stage.forces()
         return StrokeReport(
             phase=index,
             last_stroke=state.strokes,
             repeats=0,
             iterations=iterations,
-            contacts={spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed},
-            forces=stage.forces(),
+            contacts=profiles,
+            forces=forces,
             heats={name: friction.heat(sliding.travel) for name, friction in stage.frictions.items()},
             margins=stage.margins(),
             coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
@@ -354,6 +357,7 @@ class Stepper:
             cells=state.cells,
             loaded={} if self._lost_elements is None else self._lost_elements.loaded(stage),
             section=section_snapshot(stage) if kept else {},
+            findings=findings(stage, profiles, forces, self.scene.program.cycle[index]),
         )
 
     def _approach(self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool) -> None:

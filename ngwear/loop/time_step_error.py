@@ -12,7 +12,7 @@ from copy import copy
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.loop.state import State
@@ -70,7 +70,7 @@ def in_halves(state: State) -> State:
     return there
 
 
-def _deepest(state: State) -> tuple[str, slice] | None:
+def _deepest(state: State) -> tuple[str, NDArray[np.intp]] | None:
     """Contact and nodes of the zone at the deepest place; None if nothing wears there."""
     wearing = [spec.name for spec in state.stage.scene.contacts if spec.wears]
     if state.depths is None or not wearing:
@@ -81,11 +81,11 @@ def _deepest(state: State) -> tuple[str, slice] | None:
     node = int(away[name].argmin())
     profiles = [contacts[name] for contacts in seen]
     zones = [(profile.load[zone.nodes].sum(), zone.nodes) for profile in profiles for zone in profile.zones()]
-    around = [found for found in zones if found[1].start <= node < found[1].stop]
+    around = [found for found in zones if node in found[1]]
     return (name, max(around, key=lambda found: found[0])[1]) if around else None
 
 
-def _read(state: State, deepest: tuple[str, slice] | None) -> Read:
+def _read(state: State, deepest: tuple[str, NDArray[np.intp]] | None) -> Read:
     """Mean values over each given stroke, and load times travel over the cycle, to which wear is proportional."""
     scene = state.stage.scene
     out: Read = {}

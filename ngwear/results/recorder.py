@@ -6,6 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from ngwear.geometry.sizing import divided
 from ngwear.results.kept_sections import KeptSections
 from ngwear.results.result_file import CONTACT, PART, WEAR_RATE, Snapshot
 from ngwear.results.surface_text import surface_text
+from ngwear.scene.holding import free_directions
 from ngwear.scene.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
 
@@ -40,6 +42,7 @@ def fingerprint(scene: Scene) -> str:
 POINTS_ALONG = 200  # number of points for the depth on a straight edge as long as the section
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
 LEAK, EDGE = "leak pressure [MPa]", "element edge in contact [mm]"
+PUSHES = 1e-6  # of the largest force: a push below is rounding
 TORN = "area lost in all by tearing [-]"  # part of the error of the total lost area
 LOST_AREAS = LOST | {Fate.WORN: "merging"}  # lost areas; merging of surface nodes changes the area a little
 
@@ -53,6 +56,14 @@ def depths(before: Outline, after: Outline) -> Array:
     return found
 
 
+def _rests_on(scene: Scene, forces: Mapping[str, Array], axis: int) -> str:
+    """Name of the contact whose pressure pushes the part most along an axis; "nothing" if none does."""
+    push = {contact.name: abs(float(forces[contact.name][axis])) for contact in scene.contacts}
+    name = max(push, key=lambda contact: push[contact])
+    least = PUSHES * max(float(np.abs(force).max()) for force in forces.values())
+    return name if push[name] > least else "nothing"
+
+
 def measured_at(scene: Scene) -> Outline:
     """The scene's outline with additional points on straight worn edges; depths are measured at its points."""
     longest = float(np.ptp(scene.part.outline.points, axis=0).max()) / POINTS_ALONG
@@ -63,7 +74,8 @@ def measured_at(scene: Scene) -> Outline:
 class Recorder:
     """Rows and snapshots of a run so far, as plain data that a checkpoint stores.
 
-    ``unworn`` is the outline from which depths are measured: that of the scene, or of its elements.
+    ``unworn`` is the outline from which depths are measured: that of the scene, or of its elements. ``findings`` holds
+    the worst of each kind and place: how much, at which stroke, and the sentence.
     """
 
     scene: Scene
@@ -73,6 +85,7 @@ class Recorder:
     cpu: float = 0.0
     unworn: Outline | None = None
     unworn_area: float = 0.0
+    findings: dict[str, list[Any]] = field(default_factory=dict)
 
     def to_data(self) -> dict[str, Any]:
         """The records as plain data for ``from_data``, without the scene."""
@@ -92,6 +105,10 @@ class Recorder:
         for report in state.reports:
             self.rows.append(self._row(state, report, wall, unworn))
             self.snapshots.append(self._snapshot(report))
+            for found in report.findings:
+                if found.amount > self.findings.get(found.key, [0.0])[0]:
+                    stroke = self.scene.program.counted(report.last_stroke)
+                    self.findings[found.key] = [found.amount, stroke, found.sentence]
 
     def _row(self, state: Any, report: Any, wall: float, unworn: Outline) -> dict[str, Any]:
         scene = self.scene
@@ -127,6 +144,8 @@ class Recorder:
             row[f"{name} counter-surface worn area [mm^2]"] = counter.area
         for name, force in report.forces.items():
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
+        for axis in free_directions(scene):
+            row[f"rests along {'xy'[axis]} on [-]"] = _rests_on(scene, report.forces, axis)
         for name, heat in report.heats.items():
             row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
         row |= {f"{name} margin of steady sliding [-]": margin for name, margin in report.margins.items()}
@@ -229,6 +248,7 @@ class Recorder:
             under = max(scene.program.cycle, key=lambda stroke: stroke.pressure).name
             last = [row for row in self.rows if row["kind [-]"] == under][-1]
             out |= {LEAK: last[LEAK], "leaks first at": last["leaks first at [-]"]}
+        out |= self._rests()
         worst = max(ledger.worn, 1e-300)
         out["warnings"] = self._warnings()
         out |= {
@@ -257,9 +277,21 @@ class Recorder:
             out["error estimates"][TORN] = torn / max(out["area lost in all [mm^2]"], 1e-300)
         return out
 
+    def _rests(self) -> dict[str, Any]:
+        """Where a part that nothing holds rests in each kind of stroke, and where it moves over in the cycle."""
+        out: dict[str, Any] = {}
+        for axis in free_directions(self.scene) if self.rows else ():
+            column = f"rests along {'xy'[axis]} on [-]"
+            for stroke in self.scene.program.cycle:
+                rows = [row for row in self.rows if row["kind [-]"] == stroke.name]
+                out[f"{stroke.name}, {column[:-4]}"] = rows[-1][column]
+            moves = [b["stroke [-]"] for a, b in pairwise(self.rows) if a[column] != b[column]]
+            out[f"first stroke that moves the part along {'xy'[axis]}"] = moves[0] if moves else None
+        return out
+
     def _warnings(self) -> list[str]:
-        """Warnings for the reader of the results: unstable sliding, leaks."""
-        found = []
+        """Warnings for the reader of the results: what solves show, unstable sliding, leaks."""
+        found = [f"{sentence} (stroke {stroke})" for _, stroke, sentence in self.findings.values()]
         for spec in self.scene.contacts:
             column = f"{spec.name} margin of steady sliding [-]"
             least = min((row[column] for row in self.rows if row.get(column, 0.0) < 0.0), default=0.0)

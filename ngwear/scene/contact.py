@@ -10,6 +10,8 @@ from ngwear.laws import FrictionLaw, WearLaw, WearRate, law_of
 from ngwear.scene.checks import refuse_in_contact
 from ngwear.surfaces import RigidSurface
 
+ANY_EDGE = "*"
+
 
 @dataclass(frozen=True)
 class Contact:
@@ -19,7 +21,7 @@ class Contact:
     ----------
     name : str
     edges : sequence of str
-        Names of edges of the part's outline.
+        Names of edges of the part's outline; default: any may touch (``"*"``, which a scene replaces by all names).
     surface : RigidSurface
         In its final position; mounting moves it there from first touch.
     friction : FrictionLaw or float
@@ -48,7 +50,7 @@ class Contact:
 
     name: str
     _: KW_ONLY
-    edges: Sequence[str]
+    edges: Sequence[str] = (ANY_EDGE,)
     surface: RigidSurface
     friction: FrictionLaw | float = 0.0
     slides: bool = True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import KW_ONLY, dataclass, field
+from dataclasses import KW_ONLY, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +13,7 @@ from ngwear.materials import Folding, Hyperelastic, PronySeries, Stiffened
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.boundary import Fluid, Support
 from ngwear.scene.checks import refuse_in_scene
-from ngwear.scene.contact import Contact
+from ngwear.scene.contact import ANY_EDGE, Contact
 from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.options import Save, Wear
 from ngwear.scene.part import Part
@@ -63,6 +63,8 @@ class Scene:
         self._check_kinds()
         object.__setattr__(self, "program", self.program.divided(self.accuracy.parts))
         known = self.part.outline.edge_names
+        whole = [replace(c, edges=known) if tuple(c.edges) == (ANY_EDGE,) else c for c in self.contacts]
+        object.__setattr__(self, "contacts", tuple(whole))
         users = [(f"contact '{c.name}'.edges", c.edges) for c in self.contacts]
         users += [(f"support[{i}].edges", s.edges) for i, s in enumerate(self.supports)]
         if self.fluid is not None:

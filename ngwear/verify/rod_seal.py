@@ -60,7 +60,7 @@ def zones_on(profile: ContactProfile, contour: Outline, edge: str) -> list[float
     """Peak pressures of the contact zones that lie on the named edge [MPa]."""
     peaks = []
     for zone in profile.zones():
-        top = zone.nodes.start + int(np.argmax(profile.pressure[zone.nodes]))
+        top = zone.nodes[np.argmax(profile.pressure[zone.nodes])]
         if contour.names[int(np.floor(profile.t[top])) % len(contour)] == edge:
             peaks.append(zone.peak)
     return peaks

@@ -51,7 +51,7 @@ BAD = {
     "no model": ('model = "neo-hooke"\n', "", "material.model", None, "is missing"),
     "no modulus": ("shear = 1.0\n", "", "material.shear", None, "is missing"),
     "no contact name": ('name = "roller"\n', "", "contact[0].name", None, "is missing"),
-    "no contact edges": (EDGES + "\n", "", "contact[0].edges", None, "is missing"),
+    "no contact edges": (EDGES, "edges = []", "contact 'roller'.edges", (), "at least one edge"),
     "no surface": (ROLLER + "\n", "", "contact[0].surface", None, "is missing"),
     "no surface type": ('type = "cylinder", ', "", "contact[0].surface.type", None, "must be one of.*'cylinder'"),
     "no radius": ("radius = 2.0, ", "", "contact[0].surface.radius", None, "is missing"),

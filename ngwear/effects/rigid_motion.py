@@ -1,0 +1,87 @@
+"""A part with room to move: springs in the tangent let it find the wall that stops it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
+from ngwear.effects.contact import OutlineContact
+
+# Of G / L. Far below the stiffness of a wall, and of a ring that rolls (about 1e-2), so that an iteration leaves little
+# of the error; far above rounding.
+STIFFNESS = 1e-4
+FARTHEST = 2.0  # of the section's size L: a translation in one iteration
+
+
+class RigidMotion(Term):
+    """Springs between the outline and the present iterate, in the directions in which nothing holds the part.
+
+    Each Newton iteration adds ``k int (u - u_now) . v dS`` with ``k = STIFFNESS G / L`` and the present iterate
+    ``u_now``: a proximal step (Rockafellar, SIAM J. Control Optim. 14 (1976) 877). The tangent is regular while the
+    part is free to move, and the residual has no share of the springs at any time, so that the equilibrium is the one
+    without them. A free part that a load drives moves until an edge of it lies a mesh edge deep in a surface; the
+    next iteration finds the force there. A part that a load drives and nothing stops does not converge.
+
+    Parameters
+    ----------
+    directions : sequence of int
+        Components of the displacement in which nothing holds the part.
+    contacts : sequence of OutlineContact
+        What may stop it; they come before this term in the problem's list.
+    modulus : float
+        Shear modulus G of the part [MPa].
+
+    Attributes
+    ----------
+    strength : ng.Parameter
+        Factor of k, 1 at first.
+    """
+
+    def __init__(self, directions: Sequence[int], contacts: Sequence[OutlineContact], *, modulus: float) -> None:
+        super().__init__()
+        self.directions, self.contacts, self.modulus = tuple(directions), tuple(contacts), modulus
+        self.strength = ng.Parameter(1.0)
+
+    def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
+        u, v = unknowns.u, unknowns.v
+        self._state = unknowns.state[DISPLACEMENT]
+        self._now = ng.GridFunction(self._state.space)
+        self._size = unknowns.body.size
+        stiffness = STIFFNESS * self.modulus / self._size
+        work = sum((u[i] - self._now[i]) * v[i] for i in self.directions)
+        form += (self.strength * stiffness * unknowns.kinematics.weight * work).Compile() * ng.ds
+        self._shift = []
+        for i in self.directions:
+            self._now.Set(ng.CF(tuple(1.0 if k == i else 0.0 for k in range(2))))
+            self._shift.append(self._now.vec.FV().NumPy().copy())
+
+    def gather(self) -> None:
+        self._now.vec.data = self._state.vec
+
+    def limit(self, correction: Array) -> None:
+        """Shorten the mean translation of a correction to where the part meets a surface, in place.
+
+        ``correction`` is of the displacement's unknowns and is to be subtracted.
+        """
+        means = [float(correction @ shift) / float(shift.sum()) for shift in self._shift]
+        way = np.zeros(2)
+        way[list(self.directions)] = [-mean for mean in means]
+        share = min([1.0, *(self._free_share(contact, way) for contact in self.contacts)])
+        for mean, shift in zip(means, self._shift, strict=True):
+            correction -= (1 - share) * mean * shift
+
+    def _free_share(self, contact: OutlineContact, way: Array) -> float:
+        """Share of a translation [mm] after which the contact's edges lie a mesh edge deeper in its surface."""
+        length = float(np.linalg.norm(way))
+        place = contact.ends_in_frame().reshape(2, -1)
+        floor = np.minimum(contact.surface.gap(*place), 0.0) - contact.finest
+        share, most = 0.0, min(1.0, FARTHEST * self._size / length) if length > 0 else 1.0
+        while share < most:  # the gap is a distance: a step of this length does not pass the surface
+            room = float((contact.surface.gap(*(place + share * way[:, None])) - floor).min())
+            if room < 1e-2 * contact.finest:
+                return share
+            share += room / length if length > 0 else most
+        return most

@@ -1,0 +1,93 @@
+"""A part with room to move finds the wall that stops it; the forces balance; a part that nothing stops is refused."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ngwear as nw
+from ngwear.errors import ConvergenceError
+from ngwear.geometry.outline import Outline
+from ngwear.loop.run import run
+from ngwear.loop.stepper import Stepper
+from ngwear.scene.holding import free_directions
+from ngwear.surfaces import Plane
+
+ROOM, PRESSURE, HEIGHT = 0.2, 0.3, 1.0  # mm, MPa, mm
+
+
+def block(*, walls=("left", "right"), strokes=2, pressures=(PRESSURE, PRESSURE)):
+    """A block on a slippery table with room to two walls; the fluid presses on its right side."""
+    outline = Outline.rectangle((0.0, 2.0), (0.0, HEIGHT))
+    places = {"left": Plane(point=(-ROOM, 0.0), normal_vector=(1.0, 0.0))}
+    places["right"] = Plane(point=(2.0 + ROOM, 0.0), normal_vector=(-1.0, 0.0))
+    contacts = [nw.Contact(f"{w} wall", edges=[w], surface=places[w], slides=False, refine=True) for w in walls]
+    cycle = [
+        nw.Stroke(name, direction=way, travel=1.0, pressure=p)
+        for name, way, p in zip(("out", "in"), (-1, 1), pressures, strict=True)
+    ]
+    return nw.Scene(
+        "block",
+        nw.Part(outline, material=nw.NeoHooke(shear=1.0, bulk_modulus=100.0)),
+        contacts=contacts,
+        axisymmetric=False,
+        supports=[nw.Support(edges=["bottom"], x=False)],
+        fluid=nw.Fluid(edges=["right"], inlet=["right"]) if "right" not in walls else None,
+        program=nw.Program(strokes=strokes, cycle=cycle),
+        accuracy=nw.Accuracy(patch=0.2, coarse=0.5, mounting=0.2),
+    )
+
+
+def test_the_fluid_moves_the_block_to_the_wall_which_carries_all_of_it():
+    scene = block(walls=("left",))
+    assert free_directions(scene) == (0,)
+    result = run(scene, figures=False)
+    last = result.records.rows[-1]
+    assert last["rests along x on [-]"] == "left wall"
+    # The dead end of a straight side: p times its height, which the pressure itself compresses in y (no support there).
+    assert last["left wall force x [N/mm]"] == pytest.approx(-last["fluid force x [N/mm]"], rel=1e-6)
+    assert last["left wall force x [N/mm]"] > 0.9 * PRESSURE * HEIGHT
+    assert result.summary["out, rests along x on"] == "left wall"
+    assert result.summary["warnings"] == []
+
+
+def test_it_stays_where_it_is_if_nothing_drives_it():
+    scene = block(walls=("left",), pressures=(0.0, 0.0))
+    result = run(scene, figures=False)
+    assert result.records.rows[-1]["rests along x on [-]"] == "nothing"
+    assert np.abs(result.state.stage.problem.state.vec.FV().NumPy()).max() < 1e-9
+
+
+def test_springs_are_no_force():
+    """The residual has no share of the springs, wherever the part is."""
+    stepper = Stepper(block(walls=("left",)))
+    problem = stepper.start().stage.problem
+    term = problem.terms[-1]
+    problem.state.vec.FV().NumPy()[:] += 1e-3 * np.random.default_rng(0).standard_normal(problem.space.ndof)
+    with_springs, without = problem.state.vec.CreateVector(), problem.state.vec.CreateVector()
+    problem.residual(with_springs)
+    term.strength.Set(0.0)
+    problem.residual(without)
+    rounding = 1e-14 * np.abs(without.FV().NumPy()).max()
+    assert np.abs(with_springs.FV().NumPy() - without.FV().NumPy()).max() <= rounding
+
+
+def test_what_nothing_stops_is_refused():
+    scene = block(walls=("left",))
+    away = nw.Fluid(edges=["left"], inlet=["left"])  # drives the block to the right, where no wall is
+    with pytest.raises(ConvergenceError, match="nothing holds the part along x"):
+        Stepper(replace(scene, fluid=away)).start()
+
+
+def test_a_part_between_two_walls_is_held():
+    scene = block(strokes=2, pressures=(0.0, 0.0))
+    left, right = scene.contacts
+    tight = [replace(left, surface=replace(left.surface, point=(0.01, 0.0)))]
+    tight += [replace(right, surface=replace(right.surface, point=(1.99, 0.0)))]
+    assert free_directions(scene) == (0,)
+    assert free_directions(replace(scene, contacts=tight)) == ()
+
+
+@pytest.mark.parametrize("folder", ["rod_seal", "shaft_on_plate", "starving_lubrication", "torn_seal"])
+def test_shipped_parts_are_held(folder):
+    assert free_directions(nw.read_scene(f"geometries/{folder}/scene.toml")) == ()
