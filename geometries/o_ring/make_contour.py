@@ -1,6 +1,6 @@
 """Write contour.toml: an O-ring of 19.6 x 3.53 mm, a circle of 160 points in four named quarters.
 
-    python geometries/o_ring/make_contour.py
+python geometries/o_ring/make_contour.py
 """
 
 from __future__ import annotations
