@@ -86,6 +86,7 @@ def replace_stage(state: State, stage: Stage, vectors: list[Array]) -> None:
     values = _Interpolation(state.contour, stage.body.contour)
     for phase, vector in zip(state.phases, vectors, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
+        phase.path, phase.fewest = [], False
         if phase.worn is not None:
             phase.worn = replace(phase.worn, pressure=values(phase.worn.pressure), mean=values(phase.worn.mean))
     if state.depths is not None:

@@ -70,6 +70,11 @@ class Phase:
         Relative error of the last worn area [-]; infinite if it is not known.
     shares : dict of str to array, or None
         Slip over travel at the nodes [-], of each contact with stick and slip, in the last solve on this mesh.
+    path : list of tuple of float and array
+        Load steps from the previous stroke in the last solve on this mesh, if friction sticks and one step failed: the
+        fraction of the way and the equilibrium there.
+    fewest : bool
+        Whether half as many load steps have failed.
     """
 
     vector: Array
@@ -77,6 +82,8 @@ class Phase:
     worn: LastWear | None = None
     error: float = math.inf
     shares: dict[str, Array] | None = None
+    path: list[tuple[float, Array]] = field(default_factory=list)
+    fewest: bool = False
 
 
 @dataclass

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -310,6 +311,7 @@ class Stepper:
             state.memory.prepare(stage.memory, plan, index)
         before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
         work = Work()
+        path, fewest = phase.path, phase.fewest
         guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
         for guess in guesses:
             self._set_guess(state, guess)
@@ -318,11 +320,19 @@ class Stepper:
             if settle(problem, StepOptions(), work).converged:
                 break
         else:
-            self._approach(state, index, stroke, work, jumps=repeats > 1)
+            path = []
+            if len(phase.path) > 1 and not fewest:
+                path = self._follow(state, index, stroke, phase.path[::-2][::-1], work)
+                fewest = not path
+            if phase.path and not path:
+                path = self._follow(state, index, stroke, phase.path, work)
+            if not path:
+                path, fewest = self._approach(state, index, stroke, work, jumps=repeats > 1), False
         state.work.add(work)
         rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
         shares = stage.shares(stroke)
-        state.phases[index] = replace(phase, vector=vector.copy(), rate=rate if repeats else None, shares=shares)
+        rate = rate if repeats else None
+        state.phases[index] = replace(phase, vector=vector.copy(), rate=rate, shares=shares, path=path, fewest=fewest)
         return work.iterations
 
     def _set_guess(self, state: State, vector: Array) -> None:
@@ -360,12 +370,44 @@ class Stepper:
             findings=findings(stage, profiles, forces, self.scene.program.cycle[index]),
         )
 
-    def _approach(self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool) -> None:
+    def _begin_way(self, state: State, index: int) -> None:
+        """Set the end of the previous stroke of the cycle and its loads; friction counts the slip from there."""
+        stage, before = state.stage, state.phases[index - 1].vector
+        self._set_guess(state, before)
+        stage.problem.set_loads(stage.stroke_loads(self.scene.program.cycle[index - 1]))
+        stage.begin(stage.problem.state.vec.FV().NumPy())
+
+    def _follow(
+        self, state: State, index: int, stroke: Stroke, last: list[tuple[float, Array]], work: Work
+    ) -> list[tuple[float, Array]]:
+        """Reach a stroke's equilibrium by load steps of its last solve; none if one of them fails.
+
+        Where friction sticks, an equilibrium depends on the way; the states on the last way are near those on this one.
+        """
+        problem, path = state.stage.problem, []
+        self._begin_way(state, index)
+        target, loads = state.stage.stroke_loads(stroke), problem.get_loads()
+        for fraction, guess in last:
+            problem.set_loads({name: loads[name] + fraction * (end - loads[name]) for name, end in target.items()})
+            self._set_guess(state, guess)
+            for term in problem.terms:
+                term.refresh()
+            if not settle(problem, StepOptions(), work).converged:
+                return []
+            problem.commit()
+            path.append((fraction, problem.state.vec.FV().NumPy().copy()))
+        return path
+
+    def _approach(
+        self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool
+    ) -> list[tuple[float, Array]]:
         """Reach a stroke's equilibrium in load steps: from its last state, else from the previous stroke of the cycle.
+
+        Returns these steps if friction sticks, for ``Phase.path``.
 
         In a jump the search ends at a larger load step, because fewer strokes in one solve are easier.
         """
-        stage, cycle = state.stage, self.scene.program.cycle
+        stage, path = state.stage, []
         options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
         problem = stage.problem
         vector = problem.state.vec.FV().NumPy()
@@ -373,15 +415,18 @@ class Stepper:
         if not stage.has_stick_slip or self.scene.deactivation is not None:
             try:
                 work.add(relax(problem, options))
-                return
+                return []
             except ConvergenceError as error:
                 log.info("%s: trying from the previous stroke", error)
-        self._set_guess(state, state.phases[index - 1].vector)
-        problem.set_loads(stage.stroke_loads(cycle[index - 1]))
-        stage.begin(vector)
+        self._begin_way(state, index)
+
+        def record(fraction: float, _: Any) -> None:
+            path.append((fraction, vector.copy()))
+
         try:
-            work.add(advance(problem, stage.stroke_loads(stroke), options))
+            work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=record))
         except ConvergenceError as error:
             raise ConvergenceError(
                 f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
             ) from None
+        return path if stage.has_stick_slip and self.scene.deactivation is None else []
