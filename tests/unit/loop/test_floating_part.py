@@ -91,3 +91,18 @@ def test_a_part_between_two_walls_is_held():
 @pytest.mark.parametrize("folder", ["rod_seal", "shaft_on_plate", "starving_lubrication", "torn_seal"])
 def test_shipped_parts_are_held(folder):
     assert free_directions(nw.read_scene(f"geometries/{folder}/scene.toml")) == ()
+
+
+@pytest.mark.slow
+def test_a_ring_follows_the_load_steps_of_its_last_cycle():
+    """Where one step to the pressed ring fails, later cycles find it without a search of their own."""
+    scene = nw.read_scene("geometries/o_ring/scene.toml")
+    stepper = Stepper(replace(scene, accuracy=nw.Accuracy.preset("draft")))
+    state = stepper.start()
+    while not any(phase.path for phase in state.phases):
+        state = stepper.advance(state)
+    (phase,) = [phase for phase in state.phases if phase.path]
+    fractions = [fraction for fraction, _ in phase.path]
+    assert fractions == sorted(fractions)
+    assert fractions[-1] == 1.0
+    np.testing.assert_array_equal(phase.path[-1][1], phase.vector)
