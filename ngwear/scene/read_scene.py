@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +13,7 @@ from ngwear.geometry.outline import Outline
 from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.boundary import Fluid, Support
 from ngwear.scene.contact import Contact
+from ngwear.scene.holding import free_directions
 from ngwear.scene.options import Save, Wear
 from ngwear.scene.part import Part
 from ngwear.scene.pin_scene import KIND as PIN
@@ -52,6 +54,8 @@ _PAIRS = {"point", "normal", "centre", "push"}
 def read_scene(path: Path | str) -> Scene | PinScene:
     """Read a scene of any kind; file names in it are relative to the folder of the scene file.
 
+    A part with room to move takes the preset ``engineering`` if the file has no table ``accuracy``.
+
     Raises
     ------
     SceneError
@@ -76,7 +80,7 @@ def read_scene(path: Path | str) -> Scene | PinScene:
 
 def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
     known("", data, TABLES)
-    return Scene(
+    scene = Scene(
         name=name,
         axisymmetric=KINDS[data["scene"]["kind"]],
         part=_part(data, folder),
@@ -89,6 +93,10 @@ def _wear_scene(data: dict[str, Any], name: str, folder: Path) -> Scene:
         deactivation=read_deactivation(data["deactivation"]) if "deactivation" in data else None,
         save=record(Save, "save", data.get("save", {})),
     )
+    if "accuracy" not in data and free_directions(scene):
+        # Elements of 0.01 mm, the default, are too many all around a ring that moves from wall to wall.
+        return replace(scene, accuracy=Accuracy.preset("engineering"))
+    return scene
 
 
 def _part(data: dict[str, Any], folder: Path) -> Part:

@@ -1,6 +1,7 @@
 """A part with room to move finds the wall that stops it; the forces balance; a part that nothing stops is refused."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -106,3 +107,14 @@ def test_a_ring_follows_the_load_steps_of_its_last_cycle():
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
     np.testing.assert_array_equal(phase.path[-1][1], phase.vector)
+
+
+def test_a_file_without_accuracy_takes_the_preset_if_the_part_has_room_to_move(tmp_path):
+    text = Path("geometries/o_ring/scene.toml").read_text(encoding="utf-8")
+    bare = text[: text.index("[accuracy]")].replace(
+        '"contour.toml"', f"'{Path('geometries/o_ring/contour.toml').resolve()}'"
+    )
+    (tmp_path / "bare.toml").write_text(bare, encoding="utf-8")
+    assert nw.read_scene(tmp_path / "bare.toml").accuracy == nw.Accuracy.preset("engineering")
+    (tmp_path / "given.toml").write_text(bare + "[accuracy]\npatch = 0.02\n", encoding="utf-8")
+    assert nw.read_scene(tmp_path / "given.toml").accuracy == nw.Accuracy(patch=0.02)
