@@ -6,10 +6,18 @@
     print(result)
 
 The names below are loaded when they are first used: ``import ngwear`` itself loads nothing.
+
+It asks OpenBLAS for one thread, unless ``OPENBLAS_NUM_THREADS`` is set: the dense matrices here are too small for more,
+and threads that wait for work take CPU time. NGSolve's own threads are another matter, and stay.
 """
 
+import os
+import sys
 from importlib import import_module
 from typing import Any
+
+NUMPY_CAME_FIRST = "numpy" in sys.modules  # its OpenBLAS has read its number of threads
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 _NAMES = {
     "ngwear.geometry.outline": "Outline",

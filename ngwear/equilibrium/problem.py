@@ -14,6 +14,7 @@ import numpy as np
 from netgen.libngpy._meshing import NgException
 from numpy.typing import NDArray
 
+from ngwear import NUMPY_CAME_FIRST
 from ngwear.effects.base import DISPLACEMENT, VOLUMETRIC_STRESS, Term, Unknowns, VolumeTerm
 from ngwear.equilibrium.linear import DirectSolver, Tangent
 from ngwear.errors import SceneError
@@ -252,7 +253,7 @@ class Problem:
 
 
 def _blas_on_one_thread() -> AbstractContextManager[object]:
-    if os.environ.get("OPENBLAS_NUM_THREADS") == "1":  # as in the workers: it has no other, and need not be searched
+    if os.environ.get("OPENBLAS_NUM_THREADS") == "1" and not NUMPY_CAME_FIRST:  # it has no other
         return nullcontext()
     return _blas().limit(limits=1)
 
