@@ -57,3 +57,4 @@ from ngwear.surfaces import rod as rod
 from ngwear.verify import verify as verify
 
 __version__: str
+NUMPY_CAME_FIRST: bool

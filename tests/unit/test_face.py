@@ -59,6 +59,12 @@ def test_import_loads_nothing():
     assert loaded.strip() == "[]"
 
 
+def test_openblas_starts_with_one_thread_unless_the_user_says_otherwise():
+    code = "import os, sys; {}import ngwear; print(os.environ['OPENBLAS_NUM_THREADS'], ngwear.NUMPY_CAME_FIRST)"
+    assert python(code.format("os.environ.pop('OPENBLAS_NUM_THREADS', 0); ")).split() == ["1", "False"]
+    assert python(code.format("os.environ['OPENBLAS_NUM_THREADS'] = '3'; import numpy; ")).split() == ["3", "True"]
+
+
 def test_the_room_of_the_verb_verify_is_the_verb():
     assert python("import ngwear.verify.base, ngwear as nw; print(callable(nw.verify))").strip() == "True"
 
