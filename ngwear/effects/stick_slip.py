@@ -15,6 +15,7 @@ from ngwear.laws import FrictionLaw
 
 # It changes the way to the solution only, see ``_laws``; checked by ``verify partial_slip`` and ``tests/stability``.
 RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
+AT_WILL = 1e6  # of mu P: no limit to it
 NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
 
 
@@ -62,7 +63,8 @@ class StickSlip(Friction):
         p = unknowns.trial[contact.pressure_name] - NOTHING * contact.modulus
         stretch = unknowns.kinematics.area_stretch(unknowns.u, ng.Grad(unknowns.u).Trace())
         bound = self.coefficient(p / stretch) * ng.IfPos(p, p, 0.0)
-        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give)
+        again = ng.IfPos(contact.new_points_slip, bound * AT_WILL, RETURN * bound)
+        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give, again=again)
         virtual = contact.virtual(unknowns)
         work = sum(a * sum(t[i] * v for i, v in enumerate(virtual)) for a, t in zip(tractions, tangents, strict=True))
         law = sum(law * unknowns.test[name] for law, name in zip(laws, self.tractions, strict=True))
@@ -124,18 +126,23 @@ def _laws(
     *,
     bound: ng.CoefficientFunction,
     give: ng.CoefficientFunction,
+    again: ng.CoefficientFunction,
 ) -> list[ng.CoefficientFunction]:
     """Residual for each tangent [mm]: the slip where it sticks, the traction minus its limit where it slips.
 
-    A point sticks if ``|T - d| < mu P``, where d is the traction ``2 s / give`` of the slip, but a tenth of mu P at
-    most: a point whose slip direction changes must stick before it slips the other way, or Newton's method alternates
-    between the two. The tractions are constant on each mesh edge or face and the law holds in its middle: with one
-    unknown at each end there would be as many of them as displacements of order 2, and the tractions oscillate.
+    A point sticks if ``|T - d| < mu P``, where d is the traction ``2 s / give`` of the slip. If T is near its limit, d
+    is at most a tenth of mu P: a point whose slip direction changes must stick before it slips the other way, or
+    Newton's method alternates between the two. Else d is at most ``again``, the same tenth or no limit: a point that
+    has just touched has slipped by s, but has no T yet. With the tenth it sticks first and must go back by s, whatever
+    little pressure it has, which may never end; without a limit it slips first, so that nothing holds a part that has
+    just touched. The tractions are constant on each mesh edge or face and the law holds in its middle: with one unknown
+    at each end there would be as many of them as displacements of order 2, and the tractions oscillate.
     """
     stiff = 2 / give
     if len(tractions) == 1:
         (traction,), (slip,) = tractions, slips
-        most = RETURN * bound
+        held = (1 - RETURN) * bound
+        most = ng.IfPos(held - traction, ng.IfPos(held + traction, again, RETURN * bound), RETURN * bound)
         turned = traction - ng.IfPos(stiff * slip - most, most, ng.IfPos(-most - stiff * slip, -most, stiff * slip))
         sticks = ng.IfPos(bound - turned, ng.IfPos(bound + turned, 1.0, 0.0), 0.0)
         slides = (traction - ng.IfPos(turned, bound, -bound)) / stiff

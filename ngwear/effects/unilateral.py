@@ -84,6 +84,7 @@ class UnilateralContact(Term):
         self.force_controlled = force_controlled
         self.modulus = modulus
         self.softness = ng.Parameter(1.0)
+        self.new_points_slip = ng.Parameter(0.0)
         self.compliance = ng.Parameter(0.0)
         self.slips_in_part = False
         self.share: ng.GridFunction | None = None

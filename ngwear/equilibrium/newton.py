@@ -26,8 +26,10 @@ class Outcome(enum.Enum):
     BAD_START = "the start state has inverted elements: start from a state closer to the solution"
 
 
-SOFTNESS = (1.0, 10.0)  # of the contacts, one after the other: the second gets large steps onto curved contacts through
-SOFTER_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
+# One after the other: softness of the contacts, and whether points that have just touched slip first. The second gets
+# large steps onto curved contacts through, and steps in which a point alternates between stick and slip.
+ATTEMPTS = ((1.0, 0.0), (10.0, 1.0))
+SECOND_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element: to 1/64 of it; shorter ones get nowhere
 # The next four change the time, hardly the result: settled on the rod seal and the shaft, whose
 # steps took 5.2 iterations with LEAVES = 0.01 and 4.7 with 0.02 (``verify shaft_on_plate``; tutorial 2 for SMALL).
@@ -87,7 +89,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
 
     On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
     somewhere) are refused and the correction is halved, a few times. A solve that does not converge is tried once more
-    with softer contacts (see ``UnilateralContact``).
+    in another way (``ATTEMPTS``; see ``UnilateralContact``).
     """
     options = options or NewtonOptions()
     for term in problem.terms:
@@ -96,9 +98,10 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
     start.data = problem.state.vec
     contacts = [term for term in problem.terms if isinstance(term, UnilateralContact)]
     wasted = 0
-    for softness in SOFTNESS if contacts else SOFTNESS[:1]:
+    for softness, slip in ATTEMPTS if contacts else ATTEMPTS[:1]:
         for contact in contacts:
             contact.softness.Set(softness)
+            contact.new_points_slip.Set(slip)
         with problem.threads():
             report = _iterate(problem, options)
         report.iterations += wasted
@@ -106,7 +109,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
         if report.converged:
             break
         problem.state.vec.data = start
-        if report.outcome not in SOFTER_MAY_HELP:
+        if report.outcome not in SECOND_MAY_HELP:
             break
     return report
 

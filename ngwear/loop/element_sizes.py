@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.loop.stage import Stage
+from ngwear.scene.holding import free_directions
 from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
@@ -22,10 +23,30 @@ def with_mounting_lengths(scene: Scene) -> Scene:
     accuracy = scene.accuracy
     if accuracy.patch is not None:
         return scene
-    size = float(np.ptp(scene.part.outline.points, axis=0).min())
+    size = _size(scene)
     edge, coarse = MOUNTING * size, COARSE * size
     lengths = replace(accuracy, across=None, error=None, peak_error=None, patch=edge, mounting=edge, coarse=coarse)
     return replace(scene, accuracy=lengths)
+
+
+def _size(scene: Scene) -> float:
+    return float(np.ptp(scene.part.outline.points, axis=0).min())
+
+
+def coarse_for_mounting(scene: Scene) -> Scene:
+    """The scene with the elements on which it is mounted: not below a share of the section if the part can move.
+
+    The first strokes move such a part by many edges of a fine mesh; on a coarse one Newton's method converges, and its
+    states are near those on the next finer mesh.
+    """
+    return with_patch(scene, MOUNTING * _size(scene)) if free_directions(scene) else scene
+
+
+def with_patch(scene: Scene, least: float) -> Scene:
+    """The scene with element edges in contact and for mounting of at least ``least`` [mm]."""
+    accuracy, lengths = scene.accuracy, scene.accuracy.lengths
+    patch, mounting, coarse = (max(length, least) for length in (lengths.patch, lengths.mounting, lengths.coarse))
+    return replace(scene, accuracy=replace(accuracy, patch=patch, mounting=mounting, coarse=coarse))
 
 
 def with_contact_lengths(stage: Stage, phases: list[Array], across: float) -> Scene:

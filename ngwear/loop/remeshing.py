@@ -17,6 +17,7 @@ from ngwear.loop.element_sizes import with_contact_lengths
 from ngwear.loop.refinement import is_too_coarse, required_sizes, unworn_outline
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
+from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
 
@@ -53,10 +54,11 @@ def remaining_sliding(state: State) -> dict[str, float]:
     return {} if state.across is None else {"left": left}
 
 
-def remesh(state: State, contour: Outline | None = None) -> None:
+def remesh(state: State, contour: Outline | None = None, scene: Scene | None = None) -> None:
     """Remesh the present (or the given) outline and transfer the state to the new mesh, in place.
 
-    The transferred vectors are first guesses, not equilibria.
+    The transferred vectors are first guesses, not equilibria. ``scene`` gives the lengths of the new mesh; default: the
+    present ones, with ``Accuracy.across`` those of the present contacts.
 
     Raises
     ------
@@ -65,10 +67,12 @@ def remesh(state: State, contour: Outline | None = None) -> None:
     """
     old, phases = state.stage, [p.vector for p in state.phases]
     contour = old.body.contour if contour is None else contour
-    if state.across is not None:
+    if scene is not None:
+        old.scene = scene
+    elif state.across is not None:
         old.scene = with_contact_lengths(old, phases, state.across)
-        if state.ledger.worn == 0:
-            contour = unworn_outline(old.scene)
+    if (scene is not None or state.across is not None) and state.ledger.worn == 0:
+        contour = unworn_outline(old.scene)
     wanted = required_sizes(old, phases, across=state.across, **remaining_sliding(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
@@ -76,17 +80,22 @@ def remesh(state: State, contour: Outline | None = None) -> None:
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
     stage = Stage(old.scene, body, state.background)
-    replace_stage(state, stage, transfer(old.problem, phases, stage.problem))
+    ways = [vector for phase in state.phases for _, vector in phase.path]
+    replace_stage(state, stage, transfer(old.problem, phases + ways, stage.problem))
     state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
     state.ledger.remeshes += 1
 
 
 def replace_stage(state: State, stage: Stage, vectors: list[Array]) -> None:
-    """Replace the stage: ``vectors`` are the states of the strokes on it; values on the outline are interpolated."""
+    """Replace the stage; values on the outline are interpolated.
+
+    ``vectors`` are the states of the strokes on it, and then, as far as given, those of their load steps.
+    """
     values = _Interpolation(state.contour, stage.body.contour)
-    for phase, vector in zip(state.phases, vectors, strict=True):
+    ends, ways = vectors[: len(state.phases)], iter(vectors[len(state.phases) :])
+    for phase, vector in zip(state.phases, ends, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
-        phase.path, phase.fewest = [], False
+        phase.path = [(fraction, way) for (fraction, _), way in zip(phase.path, ways, strict=False)]
         if phase.worn is not None:
             phase.worn = replace(phase.worn, pressure=values(phase.worn.pressure), mean=values(phase.worn.mean))
     if state.depths is not None:

@@ -7,15 +7,13 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.state_transfer import unfold
-from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
+from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
-from ngwear.loop.element_sizes import with_contact_lengths, with_mounting_lengths
+from ngwear.loop.element_sizes import coarse_for_mounting, with_contact_lengths, with_mounting_lengths, with_patch
 from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.loop.refinement import is_too_coarse
@@ -24,8 +22,8 @@ from ngwear.loop.section_snapshot import section_snapshot
 from ngwear.loop.solution_checks import findings
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
+from ngwear.loop.stroke_solve import recorder, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
-from ngwear.scene.program import Stroke
 from ngwear.scene.scene import Scene
 from ngwear.wear.cycle_jumps import Plan, planned
 from ngwear.wear.jump_control import JumpControl
@@ -37,9 +35,9 @@ log = logging.getLogger(__name__)
 # These were settled on the rod seal (NARROWER, FIRST, MAY_COME) and the torn seal (LATE, HARDEST): the list in
 # tests/benchmarks/README.md says by which command.
 NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
+AT_ONCE = 3.0  # times as short as on the last mesh are the patch's edges of the next, if the part has room to move
 FIRST = 10  # times as long as the first step is the longest one
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
-HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
 
 
 class Stepper:
@@ -85,7 +83,8 @@ class Stepper:
             If a surface that should wear the part touches it in no stroke.
         """
         scene, accuracy = self.scene, self.scene.accuracy
-        stage = Stage(scene, unworn_body(scene, self._across))
+        coarse = coarse_for_mounting(scene)
+        stage = Stage(coarse, unworn_body(coarse, self._across))
         cycles = scene.program.strokes / len(scene.program.cycle)
         tolerances = accuracy.tolerances
         longest = max(1, math.ceil(tolerances.longest_jump * cycles))
@@ -104,8 +103,12 @@ class Stepper:
             self._lost_elements.begin(state)
         for i, stroke in enumerate(scene.program.cycle):
             stage.begin(problem.state.vec.FV().NumPy())
-            state.work.add(advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5)))
-            state.phases.append(Phase(problem.state.vec.FV().NumPy().copy()))
+            path: list[tuple[float, Array]] = []
+            on_step = recorder(problem, path)
+            work = advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5), on_step=on_step)
+            state.work.add(work)
+            needed = i > 0 and work.retries > 0 and stage.has_stick_slip and scene.deactivation is None
+            state.phases.append(Phase(problem.state.vec.FV().NumPy().copy(), path=path if needed else []))
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
         refuse_idle_contacts(state)
         if scene.deactivation is None:
@@ -120,28 +123,39 @@ class Stepper:
 
     def _refine(self, state: State) -> None:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
-        ahead = remaining_sliding(state)
-        while state.ledger.remeshes < 4:  # more remeshes improve little here; the run remeshes where it must
+        ahead, levels = remaining_sliding(state), 4  # more remeshes improve little here; the run remeshes where it must
+        floats, coarser = bool(state.stage.floats), True
+        while state.ledger.remeshes < levels:
             vectors, before = [phase.vector for phase in state.phases], state.stage.scene
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting mesh may also be too fine
+            scene = before
             if state.across is not None:
-                state.stage.scene = with_contact_lengths(state.stage, vectors, state.across)
-            narrow = state.stage.scene.accuracy.lengths.patch < NARROWER * before.accuracy.lengths.patch
+                scene = with_contact_lengths(state.stage, vectors, state.across)
+            elif floats:
+                scene = self.scene
+            wanted, had = scene.accuracy.lengths.patch, before.accuracy.lengths.patch
+            coarser = floats and wanted < had / AT_ONCE
+            if coarser:
+                scene, levels = with_patch(scene, had / AT_ONCE), levels + 1
+            state.stage.scene = scene
+            narrow = wanted < NARROWER * had
             if not (first or narrow or is_too_coarse(state.stage, vectors, **ahead)):
                 state.stage.scene = before
                 break
-            remesh(state)
+            remesh(state, scene=scene if floats else None)
             self._settle_cycle(state)
-            self.on_mount(0.9 + 0.02 * state.ledger.remeshes)
+            self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
     def _settle_cycle(self, state: State) -> None:
         """Solve each stroke of the cycle once on the present outline, without wear."""
         state.reports = []
+        if state.stage.floats and state.stage.has_stick_slip:
+            settle_last_stroke(state)
         for i, stroke in enumerate(self.scene.program.cycle):
             sliding = self._strokes(i, 0)
             wear_step = WearStep.begin(state, i, sliding)
-            iterations = self._solve_phase(state, i, stroke, sliding)
+            iterations = solve_stroke(state, i, stroke, sliding)
             wear_step.store_rates()
             state.reports.append(self._report(state, i, iterations, sliding))
 
@@ -222,7 +236,7 @@ class Stepper:
         state.phases[index] = replace(state.phases[index], rate=None)
         sliding = self._strokes(index, state.strokes)
         WearStep.begin(state, index, sliding)
-        iterations = self._solve_phase(state, index, self.scene.program.cycle[index], sliding, plan=plan)
+        iterations = solve_stroke(state, index, self.scene.program.cycle[index], sliding, plan=plan)
         return self._report(state, index, iterations, sliding)
 
     def _step(self, state: State, cycles: int) -> float:
@@ -241,7 +255,7 @@ class Stepper:
             outline, iterations, tears = state.contour, 0, True
             while tears:
                 wear_step = WearStep.begin(state, i, sliding, later=later)
-                iterations += self._solve_phase(state, i, cycle[i], sliding, plan=plan)
+                iterations += solve_stroke(state, i, cycle[i], sliding, plan=plan)
                 tears = self._lost_elements is not None and self._lost_elements.tear(state, outline, repeats)
                 if tears and repeats > max(1.0, LATE * self.scene.program.strokes / len(cycle)):
                     return math.inf
@@ -279,69 +293,6 @@ class Stepper:
         program = self.scene.program
         return Strokes(program.slid(done), program.cycle[kind].travel, program.slid(len(program.cycle)), repeats)
 
-    def _solve_phase(
-        self,
-        state: State,
-        index: int,
-        stroke: Stroke,
-        sliding: Strokes,
-        *,
-        plan: Plan = (),
-    ) -> int:
-        """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
-
-        ``plan`` is the plan of the step, for the memory.
-        """
-        stage, phase = state.stage, state.phases[index]
-        problem = stage.problem
-        vector = problem.state.vec.FV().NumPy()
-        stage.begin(state.phases[index - 1].vector)
-        problem.set_loads(stage.stroke_loads(stroke))
-        for friction in stage.frictions.values():
-            friction.coefficient.set_state(sliding.middle, stroke.speed)
-        if stage.has_stick_slip:
-            from ngwear.loop.slip_over_cycles import slip_per_cycle
-
-            stage.set_shares(slip_per_cycle(self.scene.program.cycle, state.phases, index, sliding.repeats))
-        if state.counters:
-            from ngwear.loop import counter_surface
-
-            counter_surface.place(stage, state.counters, index, sliding)
-        if state.memory is not None and stage.memory is not None:
-            state.memory.prepare(stage.memory, plan, index)
-        before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
-        work = Work()
-        path, fewest = phase.path, phase.fewest
-        guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
-        for guess in guesses:
-            self._set_guess(state, guess)
-            for term in problem.terms:
-                term.refresh()
-            if settle(problem, StepOptions(), work).converged:
-                break
-        else:
-            path = []
-            if len(phase.path) > 1 and not fewest:
-                path = self._follow(state, index, stroke, phase.path[::-2][::-1], work)
-                fewest = not path
-            if phase.path and not path:
-                path = self._follow(state, index, stroke, phase.path, work)
-            if not path:
-                path, fewest = self._approach(state, index, stroke, work, jumps=repeats > 1), False
-        state.work.add(work)
-        rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
-        shares = stage.shares(stroke)
-        rate = rate if repeats else None
-        state.phases[index] = replace(phase, vector=vector.copy(), rate=rate, shares=shares, path=path, fewest=fewest)
-        return work.iterations
-
-    def _set_guess(self, state: State, vector: Array) -> None:
-        """Set the first guess of the next solve; inverted elements are unfolded if the scene deactivates elements."""
-        problem = state.stage.problem
-        problem.state.vec.FV().NumPy()[:] = vector
-        if self.scene.deactivation is not None:
-            unfold(problem)
-
     def _report(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """Report of the stroke's equilibrium, before its wear."""
         stage = state.stage
@@ -369,64 +320,3 @@ class Stepper:
             section=section_snapshot(stage) if kept else {},
             findings=findings(stage, profiles, forces, self.scene.program.cycle[index]),
         )
-
-    def _begin_way(self, state: State, index: int) -> None:
-        """Set the end of the previous stroke of the cycle and its loads; friction counts the slip from there."""
-        stage, before = state.stage, state.phases[index - 1].vector
-        self._set_guess(state, before)
-        stage.problem.set_loads(stage.stroke_loads(self.scene.program.cycle[index - 1]))
-        stage.begin(stage.problem.state.vec.FV().NumPy())
-
-    def _follow(
-        self, state: State, index: int, stroke: Stroke, last: list[tuple[float, Array]], work: Work
-    ) -> list[tuple[float, Array]]:
-        """Reach a stroke's equilibrium by load steps of its last solve; none if one of them fails.
-
-        Where friction sticks, an equilibrium depends on the way; the states on the last way are near those on this one.
-        """
-        problem, path = state.stage.problem, []
-        self._begin_way(state, index)
-        target, loads = state.stage.stroke_loads(stroke), problem.get_loads()
-        for fraction, guess in last:
-            problem.set_loads({name: loads[name] + fraction * (end - loads[name]) for name, end in target.items()})
-            self._set_guess(state, guess)
-            for term in problem.terms:
-                term.refresh()
-            if not settle(problem, StepOptions(), work).converged:
-                return []
-            problem.commit()
-            path.append((fraction, problem.state.vec.FV().NumPy().copy()))
-        return path
-
-    def _approach(
-        self, state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool
-    ) -> list[tuple[float, Array]]:
-        """Reach a stroke's equilibrium in load steps: from its last state, else from the previous stroke of the cycle.
-
-        Returns these steps if friction sticks, for ``Phase.path``.
-
-        In a jump the search ends at a larger load step, because fewer strokes in one solve are easier.
-        """
-        stage, path = state.stage, []
-        options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
-        problem = stage.problem
-        vector = problem.state.vec.FV().NumPy()
-        self._set_guess(state, state.phases[index].vector)
-        if not stage.has_stick_slip or self.scene.deactivation is not None:
-            try:
-                work.add(relax(problem, options))
-                return []
-            except ConvergenceError as error:
-                log.info("%s: trying from the previous stroke", error)
-        self._begin_way(state, index)
-
-        def record(fraction: float, _: Any) -> None:
-            path.append((fraction, vector.copy()))
-
-        try:
-            work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=record))
-        except ConvergenceError as error:
-            raise ConvergenceError(
-                f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
-            ) from None
-        return path if stage.has_stick_slip and self.scene.deactivation is None else []

@@ -19,7 +19,7 @@ from ngwear.cli import main
 from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError, GeometryError, NgwearError, ResultError, SceneError
 from ngwear.files.result_folder import CHECKPOINT, FIELDS, SERIES, SUMMARY
-from ngwear.loop import stepper
+from ngwear.loop import stroke_solve
 from ngwear.loop.checkpoint import load
 from ngwear.loop.run import COMPLETED, GAVE_UP, run
 from ngwear.loop.stepper import Stepper
@@ -590,14 +590,14 @@ def test_a_jump_of_a_fixed_length_that_fails_is_halved(sheet, monkeypatch):
 @pytest.mark.parametrize(("most", "hardest"), [(1, 1 / 512), (4, 1 / 16)])
 def test_hard_ways_are_for_single_strokes(sheet, monkeypatch, most, hardest):
     """A jump is cut instead."""
-    walks, real = [], stepper.relax
-    monkeypatch.setattr(stepper, "settle", lambda *_: Report(Outcome.STALLED))
+    walks, real = [], stroke_solve.relax
+    monkeypatch.setattr(stroke_solve, "settle", lambda *_: Report(Outcome.STALLED))
 
     def relax(problem, options):
         walks.append(options.smallest)
         return real(problem, options)
 
-    monkeypatch.setattr(stepper, "relax", relax)
+    monkeypatch.setattr(stroke_solve, "relax", relax)
     wear = replace(sheet.wear, step="fixed", max_jump=most)
     scene = replace(sheet, wear=wear, program=replace(sheet.program, strokes=4))
     hand = Stepper(scene)

@@ -9,6 +9,7 @@ from ngwear.errors import MeshError
 from ngwear.geometry.outline import Outline
 from ngwear.loop.remeshing import _Interpolation
 from ngwear.loop.stepper import Stepper
+from ngwear.loop.stroke_solve import solve_stroke
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.accuracy import Accuracy
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
@@ -101,7 +102,7 @@ def test_where_nodes_cannot_follow_the_strokes_to_come_leave_air(coarse_seal, mo
             if not follows:
                 patch.setattr(state.stage.body, "move_to", _refuse)
             WearStep.begin(state, 0, outward, later=later)
-        stepper._solve_phase(state, 0, state.stage.scene.program.cycle[0], outward)
+        solve_stroke(state, 0, state.stage.scene.program.cycle[0], outward)
         found = state.stage.contacts["rod"].profile().pressure.max()
         state.restore(saved)
         return found

@@ -1,0 +1,208 @@
+"""The equilibrium of one stroke: at once from a guess, by the load steps of the last solve, or by new load steps."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.newton import Report
+from ngwear.equilibrium.problem import Problem
+from ngwear.equilibrium.state_transfer import unfold
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
+from ngwear.errors import ConvergenceError
+from ngwear.loop.state import State
+from ngwear.scene.program import Stroke
+from ngwear.wear.cycle_jumps import Plan
+from ngwear.wear.sliding_distance import Strokes
+
+Array = NDArray[np.float64]
+log = logging.getLogger(__name__)
+
+# Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
+HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
+
+
+def solve_stroke(
+    state: State,
+    index: int,
+    stroke: Stroke,
+    sliding: Strokes,
+    *,
+    plan: Plan = (),
+) -> int:
+    """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
+
+    ``plan`` is the plan of the step, for the memory.
+    """
+    stage, phase = state.stage, state.phases[index]
+    problem = stage.problem
+    vector = problem.state.vec.FV().NumPy()
+    stage.begin(state.phases[index - 1].vector)
+    problem.set_loads(stage.stroke_loads(stroke))
+    for friction in stage.frictions.values():
+        friction.coefficient.set_state(sliding.middle, stroke.speed)
+    if stage.has_stick_slip:
+        from ngwear.loop.slip_over_cycles import slip_per_cycle
+
+        stage.set_shares(slip_per_cycle(state.stage.scene.program.cycle, state.phases, index, sliding.repeats))
+    if state.counters:
+        from ngwear.loop import counter_surface
+
+        counter_surface.place(stage, state.counters, index, sliding)
+    if state.memory is not None and stage.memory is not None:
+        state.memory.prepare(stage.memory, plan, index)
+    before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
+    work, path, fewest = Work(), phase.path, phase.fewest
+    guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
+    if phase.path and phase.shares is None:
+        guesses = []  # on a new mesh a way that needed steps needs them again
+    if not any(_solves(state, guess, work) for guess in guesses):
+        path, fewest = _by_steps(state, index, stroke, work, jumps=repeats > 1)
+    state.work.add(work)
+    rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
+    shares = stage.shares(stroke)
+    rate = rate if repeats else None
+    state.phases[index] = replace(phase, vector=vector.copy(), rate=rate, shares=shares, path=path, fewest=fewest)
+    return work.iterations
+
+
+def settle_last_stroke(state: State) -> None:
+    """Bring the end of the cycle's last stroke, as transferred to a new mesh, to equilibrium there.
+
+    A point that sticks stays where it is. The next stroke starts from there: from a state out of balance its first load
+    step, however short, would have to undo that, too.
+
+    Raises
+    ------
+    ConvergenceError
+        If there is no equilibrium nearby.
+    """
+    stage, last, work = state.stage, state.phases[-1], Work()
+    stage.problem.set_loads(stage.stroke_loads(stage.scene.program.cycle[-1]))
+    stage.begin(last.vector)
+    if not _solves(state, last.vector, work):
+        _set_guess(state, last.vector)
+        work.add(relax(stage.problem, StepOptions(first=0.25)))
+    state.work.add(work)
+    last.vector = stage.problem.state.vec.FV().NumPy().copy()
+
+
+def _solves(state: State, guess: Array, work: Work) -> bool:
+    """Whether the present loads are solved at once from a first guess."""
+    _set_guess(state, guess)
+    for term in state.stage.problem.terms:
+        term.refresh()
+    return settle(state.stage.problem, StepOptions(), work).converged
+
+
+def _by_steps(
+    state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool
+) -> tuple[list[tuple[float, Array]], bool]:
+    """Solve a stroke in load steps; return ``Phase.path`` and ``Phase.fewest``.
+
+    In a jump the search ends at a larger load step, because fewer strokes in one solve are easier.
+
+    Raises
+    ------
+    ConvergenceError
+        If a load step fails.
+    """
+    options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
+    try:
+        if state.phases[index].path:
+            return _follow(state, index, stroke, work, options)
+        return _approach(state, index, stroke, work, options), False
+    except ConvergenceError as error:
+        raise ConvergenceError(
+            f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
+        ) from None
+
+
+def _set_guess(state: State, vector: Array) -> None:
+    """Set the first guess of the next solve; inverted elements are unfolded if the scene deactivates elements."""
+    problem = state.stage.problem
+    problem.state.vec.FV().NumPy()[:] = vector
+    if state.stage.scene.deactivation is not None:
+        unfold(problem)
+
+
+def _begin_path(state: State, index: int) -> None:
+    """Set the end of the previous stroke of the cycle and its loads; friction counts the slip from there."""
+    stage, before = state.stage, state.phases[index - 1].vector
+    _set_guess(state, before)
+    stage.problem.set_loads(stage.stroke_loads(state.stage.scene.program.cycle[index - 1]))
+    stage.begin(stage.problem.state.vec.FV().NumPy())
+
+
+def _follow(
+    state: State, index: int, stroke: Stroke, work: Work, options: StepOptions
+) -> tuple[list[tuple[float, Array]], bool]:
+    """Reach a stroke's equilibrium by load steps of its last solve: half as many, if those suffice.
+
+    Where friction sticks, an equilibrium depends on the way; the states on the last way are near those on this one.
+    A step that fails is taken in shorter ones.
+    """
+    problem, known, fewest = state.stage.problem, state.phases[index].path, state.phases[index].fewest
+    _begin_path(state, index)
+    target, loads = state.stage.stroke_loads(stroke), problem.get_loads()
+    path: list[tuple[float, Array]] = []
+    reached = 0.0
+
+    def at(fraction: float) -> dict[str, float]:
+        return {name: loads[name] + fraction * (end - loads[name]) for name, end in target.items()}
+
+    def solves(step: int) -> bool:
+        problem.set_loads(at(known[step][0]))
+        return _solves(state, known[step][1], work)
+
+    here = 0
+    while here < len(known):
+        begin = problem.state.vec.FV().NumPy().copy()
+        step = here + 1 if not fewest and (len(known) - here) % 2 == 0 else here
+        solved = solves(step)
+        if not solved and step > here:
+            step, fewest = here, True
+            solved = solves(step)
+        goal = known[step][0]
+        if solved:
+            problem.commit()
+            path.append((goal, problem.state.vec.FV().NumPy().copy()))
+        else:
+            _set_guess(state, begin)
+            problem.set_loads(at(reached))
+            for term in problem.terms:
+                term.refresh()
+            steps: list[tuple[float, Array]] = []
+            work.add(advance(problem, at(goal), replace(options, first=0.5), on_step=recorder(problem, steps)))
+            path += [(reached + fraction * (goal - reached), vector) for fraction, vector in steps]
+        reached, here = goal, step + 1
+    return path, fewest
+
+
+def _approach(state: State, index: int, stroke: Stroke, work: Work, options: StepOptions) -> list[tuple[float, Array]]:
+    """Reach a stroke's equilibrium in load steps: from its last state, else from the previous stroke of the cycle.
+
+    Returns these steps if friction sticks, for ``Phase.path``.
+    """
+    stage, problem = state.stage, state.stage.problem
+    _set_guess(state, state.phases[index].vector)
+    follows = stage.has_stick_slip and stage.scene.deactivation is None
+    if not follows:
+        try:
+            work.add(relax(problem, options))
+            return []
+        except ConvergenceError as error:
+            log.info("%s: trying from the previous stroke", error)
+    _begin_path(state, index)
+    path: list[tuple[float, Array]] = []
+    work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
+    return path if follows else []
+
+
+def recorder(problem: Problem, path: list[tuple[float, Array]]) -> Callable[[float, Report], None]:
+    """``on_step`` that appends each fraction and its equilibrium to ``path``."""
+    return lambda fraction, _: path.append((fraction, problem.state.vec.FV().NumPy().copy()))
