@@ -23,7 +23,9 @@ class FluidPressure(Term):
     chi is 1 from the inlet edges, in both directions along the outline, up to the first mesh edge in contact, and 0
     beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``). Treating such an
     edge as dry would move the front by half an edge on average; with coarse edges the load would change by some per
-    cent.
+    cent. A contact that carries less than the fluid's pressure is lifted off its surface: the fluid passes it, and
+    stays behind it until its pressure is zero, also if the contact closes again. A fluid that no contact holds ends at
+    the highest contact pressure.
 
     chi is fixed in a solve and updated after it, until the change of load is below ``STAYS``. If the fluid reaches the
     end of the named edges without a contact, ``leaks`` is True: the seal leaks.
@@ -75,6 +77,8 @@ class FluidPressure(Term):
         self._inlet = inlet = np.isin(line.names, self.inlet)
         m = len(line.names)
         self._lengths = body.contour.arc_lengths(*line.t.T)
+        self._middles = body.base.at(line.t.ravel()).reshape(-1, 2, 2).mean(axis=1)
+        self._passed, self._reached = [0, 0], [0, 0]  # edges of each way
         self._paths = []
         for step in (1, -1):
             path = [int(np.flatnonzero(inlet & ~np.roll(inlet, -step))[0])]
@@ -90,11 +94,17 @@ class FluidPressure(Term):
         touching, outside, carried = self._contact()
         share = np.where(self._inlet, 1.0, 0.0)
         self.leaks = False
-        for step, path in self._paths:
+        if self.pressure.Get() == 0.0:
+            self._passed = [0, 0]
+        elif self._solved:
+            self._pass(touching)
+        for k, (step, path) in enumerate(self._paths):
             stop = np.flatnonzero(touching[path])
             self.leaks |= len(stop) == 0
-            wet = path[: stop[0]] if len(stop) else path
-            share[wet] = 1.0
+            stop = stop[stop >= self._passed[k]]
+            reached = int(stop[0]) if len(stop) else len(path)
+            share[path[:reached]] = 1.0
+            self._reached[k] = reached if self.pressure.Get() > 0 else 0
             if len(stop) and stop[0] > 0:
                 share[path[stop[0]]] = outside[path[stop[0]], 0 if step == 1 else 1]
         field = self.wetted.vec.FV().NumPy()
@@ -107,6 +117,54 @@ class FluidPressure(Term):
 
     def prepare(self) -> None:
         self._solved = True
+
+    def _pass(self, touching: np.ndarray) -> None:
+        """Let the fluid into contacts that it lifts: the next edges of ``_passed`` are those that hold it.
+
+        A contact that has closed in front of a gap that the fluid fills does not drain it.
+
+        An edge holds it if the surroundings press it, or the next one, as hard as the fluid would: at the contact's end
+        the pressure jumps from zero to the fluid's within a mesh edge, which carries less of it. On an edge that the
+        fluid has wetted and that still touches, both press. Where none holds it, the fluid ends at the one that is
+        pressed hardest.
+        """
+        bears = self.pressure.Get() * self.shares
+        for contact in self.contacts:
+            profile = contact.profile()
+            pressure = profile.pressure[profile.edges].max(axis=1)
+            bears[contact.positions] = np.maximum(bears[contact.positions], pressure)
+        for k, (_, path) in enumerate(self._paths):
+            stop = np.flatnonzero(touching[path])
+            stop = stop[stop >= self._passed[k]]
+            if len(stop) == 0:
+                continue
+            filled = np.flatnonzero(~touching[path[: self._reached[k]]])
+            if len(filled) and filled[-1] > stop[0]:
+                self._passed[k] = int(filled[-1]) + 1
+                stop = stop[stop >= self._passed[k]]
+                if len(stop) == 0:
+                    continue
+            most = np.maximum(bears[path], np.append(bears[path[1:]], 0.0))[stop]
+            holds = stop[most >= self.pressure.Get()]
+            last = int(holds[0]) if len(holds) else int(stop[most.argmax()])
+            if last > stop[0]:
+                self._passed[k] = last
+
+    @property
+    def passed(self) -> np.ndarray:
+        """Reference places up to which the fluid has lifted contacts, one a way; nan: none; shape (2, 2) [mm]."""
+        places = np.full((2, 2), np.nan)
+        for k, (_, path) in enumerate(self._paths):
+            if self._passed[k] > 0:
+                places[k] = self._middles[path[self._passed[k]]]
+        return places
+
+    @passed.setter
+    def passed(self, places: np.ndarray) -> None:
+        for k, (_, path) in enumerate(self._paths):
+            known = bool(np.isfinite(places[k]).all())
+            apart = np.linalg.norm(self._middles[path] - places[k], axis=1) if known else np.zeros(1)
+            self._passed[k] = int(apart.argmin())
 
     def _contact(self) -> tuple[np.ndarray, np.ndarray, float]:
         """Mesh edges with contact pressure, the share of each edge's length without it, and the total contact load.

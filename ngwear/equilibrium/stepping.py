@@ -11,6 +11,7 @@ from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
 
+SHORTEST = 1 / 64  # of the load of a fluid that floods a gap at once: a step below which the load step is cut instead
 LOOSER = 1e3  # tolerance of a solve on the way over the last one's, if it only starts the next
 
 
@@ -59,12 +60,21 @@ class Work:
 
 
 def settle(problem: Problem, options: StepOptions, work: Work, *, update: bool = True) -> Report:
-    """Solve at the present loads, again while a term (the fluid front) asks for it, if ``update``."""
-    for _ in range(options.max_updates):
+    """Solve at the present loads, again while a term (the fluid front) asks for it, if ``update``.
+
+    If what a term changes is too much for one solve, its load is applied in steps.
+    """
+    for updates in range(options.max_updates):
         report = solve(problem, options.newton)
         work.count(report)
         if not report.converged:
-            return report
+            if updates == 0 or not update or IMBALANCE in problem.get_loads():
+                return report
+            try:
+                work.add(relax(problem, replace(options, first=0.25, smallest=SHORTEST)))
+            except ConvergenceError:
+                return report
+            return replace(report, outcome=Outcome.CONVERGED)
         if not update or not any([term.refresh() for term in problem.terms]):
             return report
     return report

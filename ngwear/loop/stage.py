@@ -143,6 +143,18 @@ class Stage:
         spec = self.scene.fluid
         return self.fluid if spec is not None and spec.leak_pressure else None
 
+    def fluid_passed(self) -> Array | None:
+        """Places up to which the fluid has lifted contacts in the present state, for ``let_fluid_pass``; None: none."""
+        if self.fluid is None:
+            return None
+        places = self.fluid.passed
+        return places if np.isfinite(places).any() else None
+
+    def let_fluid_pass(self, places: Array | None) -> None:
+        """Set the places up to which the fluid has lifted contacts, before a solve."""
+        if self.fluid is not None:
+            self.fluid.passed = np.full((2, 2), np.nan) if places is None else places
+
     @property
     def has_stick_slip(self) -> bool:
         """Whether a contact has stick and slip: then a stroke depends on the end of the previous one."""

@@ -75,6 +75,8 @@ class Phase:
         fraction of the way and the equilibrium there.
     fewest : bool
         Whether half as many load steps have failed.
+    passed : array or None
+        Reference places up to which the fluid has lifted contacts (``FluidPressure.passed``); None without.
     """
 
     vector: Array
@@ -84,6 +86,7 @@ class Phase:
     shares: dict[str, Array] | None = None
     path: list[tuple[float, Array]] = field(default_factory=list)
     fewest: bool = False
+    passed: Array | None = None
 
 
 @dataclass

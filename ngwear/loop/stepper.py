@@ -108,7 +108,9 @@ class Stepper:
             work = advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5), on_step=on_step)
             state.work.add(work)
             needed = i > 0 and work.retries > 0 and stage.has_stick_slip and scene.deactivation is None
-            state.phases.append(Phase(problem.state.vec.FV().NumPy().copy(), path=path if needed else []))
+            state.phases.append(
+                Phase(problem.state.vec.FV().NumPy().copy(), path=path if needed else [], passed=stage.fluid_passed())
+            )
             self.on_mount(0.7 + 0.2 * (i + 1) / phases)
         refuse_idle_contacts(state)
         if scene.deactivation is None:

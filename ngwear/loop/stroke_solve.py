@@ -57,6 +57,7 @@ def solve_stroke(
         state.memory.prepare(stage.memory, plan, index)
     before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
     work, path, fewest = Work(), phase.path, phase.fewest
+    stage.let_fluid_pass(phase.passed)
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
     if phase.path and phase.shares is None:
         guesses = []  # on a new mesh a way that needed steps needs them again
@@ -66,7 +67,15 @@ def solve_stroke(
     rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
     shares = stage.shares(stroke)
     rate = rate if repeats else None
-    state.phases[index] = replace(phase, vector=vector.copy(), rate=rate, shares=shares, path=path, fewest=fewest)
+    state.phases[index] = replace(
+        phase,
+        vector=vector.copy(),
+        rate=rate,
+        shares=shares,
+        path=path,
+        fewest=fewest,
+        passed=stage.fluid_passed(),
+    )
     return work.iterations
 
 
@@ -84,6 +93,7 @@ def settle_last_stroke(state: State) -> None:
     stage, last, work = state.stage, state.phases[-1], Work()
     stage.problem.set_loads(stage.stroke_loads(stage.scene.program.cycle[-1]))
     stage.begin(last.vector)
+    stage.let_fluid_pass(last.passed)
     if not _solves(state, last.vector, work):
         _set_guess(state, last.vector)
         work.add(relax(stage.problem, StepOptions(first=0.25)))
@@ -133,6 +143,7 @@ def _set_guess(state: State, vector: Array) -> None:
 def _begin_path(state: State, index: int) -> None:
     """Set the end of the previous stroke of the cycle and its loads; friction counts the slip from there."""
     stage, before = state.stage, state.phases[index - 1].vector
+    stage.let_fluid_pass(state.phases[index - 1].passed)
     _set_guess(state, before)
     stage.problem.set_loads(stage.stroke_loads(state.stage.scene.program.cycle[index - 1]))
     stage.begin(stage.problem.state.vec.FV().NumPy())
