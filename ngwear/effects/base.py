@@ -102,6 +102,13 @@ class Term(abc.ABC):
     def prepare(self) -> None:  # noqa: B027 - most terms fix nothing
         """Before a solve, compute from its start state the quantities that stay fixed in it."""
 
+    def attempt(self, number: int) -> bool:
+        """Before attempt 0 of a solve, and before attempt 1 if that has failed; True if the term changes its way.
+
+        It may change the way to the solution, not the solution.
+        """
+        return False
+
     def refresh(self) -> bool:
         """After a solve, update the quantities that were fixed in it; True if another solve is necessary."""
         return False

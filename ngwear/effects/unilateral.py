@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # brings friction along
     from ngwear.effects.pressure_wear import PressureWear
 
 Array = NDArray[np.float64]
+SOFTNESS = (1.0, 10.0)  # in the first attempt, and the second, which gets large steps onto curved contacts through
 COORDINATES = (ng.x, ng.y, ng.z)
 
 
@@ -209,6 +210,10 @@ class UnilateralContact(Term):
         normal = self.surface.normal(*self.place(self._state))
         weight = self._kinematics.weight
         return np.array([ng.Integrate(p * n * weight * self.measure(), self._body.mesh) for n in normal])
+
+    def attempt(self, number: int) -> bool:
+        self.softness.Set(SOFTNESS[number])
+        return True
 
     def prepare(self) -> None:
         self._start.vec.data = self._state[DISPLACEMENT].vec

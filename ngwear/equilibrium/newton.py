@@ -26,9 +26,7 @@ class Outcome(enum.Enum):
     BAD_START = "the start state has inverted elements: start from a state closer to the solution"
 
 
-# One after the other: softness of the contacts, and whether points that have just touched slip first. The second gets
-# large steps onto curved contacts through, and steps in which a point alternates between stick and slip.
-ATTEMPTS = ((1.0, 0.0), (10.0, 1.0))
+ATTEMPTS = 2  # of a solve: what the terms change in the second one, ``Term.attempt`` says
 SECOND_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
 HALVINGS = 7  # of a correction that would fold an element: to 1/64 of it; shorter ones get nowhere
 # The next four change the time, hardly the result: settled on the rod seal and the shaft, whose
@@ -89,19 +87,17 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
 
     On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
     somewhere) are refused and the correction is halved, a few times. A solve that does not converge is tried once more
-    in another way (``ATTEMPTS``; see ``UnilateralContact``).
+    in another way (``Term.attempt``).
     """
     options = options or NewtonOptions()
     for term in problem.terms:
         term.prepare()
     start = problem.state.vec.CreateVector()
     start.data = problem.state.vec
-    contacts = [term for term in problem.terms if isinstance(term, UnilateralContact)]
     wasted = 0
-    for softness, slip in ATTEMPTS if contacts else ATTEMPTS[:1]:
-        for contact in contacts:
-            contact.softness.Set(softness)
-            contact.new_points_slip.Set(slip)
+    for attempt in range(ATTEMPTS):
+        if not any([term.attempt(attempt) for term in problem.terms]) and attempt > 0:
+            break
         with problem.threads():
             report = _iterate(problem, options)
         report.iterations += wasted

@@ -63,15 +63,15 @@ def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
     def report(fraction: float, _: Any) -> None:
         on_mount(0.7 * fraction)
 
-    stretched = stage.stretched_guess()
-    if stretched and not stage.floats:
+    if not stage.floats and stage.stretched_guess():
         problem.set_loads(loads)
         try:
             return relax(problem, StepOptions(first=1 / 64), on_step=report)  # a guess: begin with care
         except ConvergenceError as error:
             log.info("%s: mounting by interference instead", error)
             problem.state.vec[:] = 0.0
-    problem.set_loads(stage.first_touch(stretched=stretched and bool(stage.floats)))
+    # A part with room to move is held between its surfaces on the way; stretched off its shaft it would tip over.
+    problem.set_loads(stage.first_touch())
     try:
         return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)  # grows while it is easy
     except ConvergenceError as error:

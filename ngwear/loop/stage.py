@@ -187,36 +187,25 @@ class Stage:
         incompressible ring, so that this guess has no volumetric strain. The equilibrium from there takes a fifth of
         the iterations of mounting by interference from first touch.
         """
-        growth = self._growth()
-        if growth == 0.0:
-            return False
-        self.problem.fields[DISPLACEMENT].Set(ng.CF((0, (ng.y**2 + growth) ** 0.5 - ng.y)))
-        return True
-
-    def _growth(self) -> float:
-        """Increase of r² [mm²] at which an axisymmetric part clears its shafts; 0 if no shaft overlaps it."""
         growth = 0.0
         if not self.scene.axisymmetric:
-            return growth
+            return False
         for spec in self.scene.contacts:
             if spec.force is None and spec.surface.approach[1] > 0.5:
                 overlap = self._overlap(spec)
                 radius = float(self.body.contour.points[self._clearance(spec)[1], 1])
                 growth = max(growth, (radius + overlap) ** 2 - radius**2)
-        return growth
+        if growth == 0.0:
+            return False
+        self.problem.fields[DISPLACEMENT].Set(ng.CF((0, (ng.y**2 + growth) ** 0.5 - ng.y)))
+        return True
 
-    def first_touch(self, *, stretched: bool = False) -> dict[str, float]:
-        """Loads before mounting: surfaces that overlap the part are moved back until they just touch it.
-
-        ``stretched``: the part as ``stretched_guess`` gives it, which clears its shafts.
-        """
-        points = self.body.contour.points.copy()
-        if stretched:
-            points[:, 1] = np.sqrt(points[:, 1] ** 2 + self._growth())
+    def first_touch(self) -> dict[str, float]:
+        """Loads before mounting: surfaces that overlap the part are moved back until they just touch it."""
         loads: dict[str, float] = {}
         for spec in self.scene.contacts:
             contact = self.contacts[spec.name]
-            overlap = self._overlap(spec, points)
+            overlap = self._overlap(spec)
             if spec.force is None:
                 loads |= dict.fromkeys(contact.loads, -overlap)
             else:
@@ -275,14 +264,11 @@ class Stage:
             f"contact '{spec.name}'.surface", spec.surface, "does not meet its edges along its direction of approach"
         )
 
-    def _overlap(self, spec: Contact, points: Array | None = None) -> float:
-        """Distance by which the surface must move back along its approach to clear the part [mm].
-
-        ``points`` of the outline as it stands, shape (n, 2); default: undeformed.
-        """
+    def _overlap(self, spec: Contact) -> float:
+        """Distance by which the surface must move back along its approach to clear the part [mm]."""
         contour = self.body.contour
         mine = contour.on(spec.edges)
-        x, y = (contour.points if points is None else points)[mine | np.roll(mine, 1)].T
+        x, y = contour.points[mine | np.roll(mine, 1)].T
         ax, ay = spec.surface.approach
         low, high = 0.0, float(np.ptp(contour.points, axis=0).max())
 
