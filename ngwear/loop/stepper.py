@@ -32,7 +32,7 @@ from ngwear.wear.sliding_distance import Strokes
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
-# These were settled on the rod seal (NARROWER, FIRST, MAY_COME) and the torn seal (LATE, HARDEST): the list in
+# These were settled on the rod seal (NARROWER, FIRST), an O-ring (AT_ONCE) and the torn seal (LATE): the list in
 # tests/benchmarks/README.md says by which command.
 NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
 AT_ONCE = 3.0  # times as short as on the last mesh are the patch's edges of the next, if the part has room to move

@@ -104,6 +104,9 @@ CASES: dict[str, Case] = {
         "what a squeezed block holds of a fluid with the squeeze's pressure",
         quick=True,
     ),
+    "confined_ring": Case(
+        "ngwear.verify.confined_ring", 10, "a ring in a closed groove: its own pressure and the fluid's"
+    ),
     "o_ring_squeeze": Case("ngwear.verify.o_ring_squeeze", 8, "an O-ring between two plates with Lindley's formula"),
     "block_on_ring": Case(
         "ngwear.verify.block_on_ring", 27, "a block worn over 3600 m with an implicit half-plane solver"
