@@ -1,0 +1,77 @@
+"""A U-cup between two shoulders: the fluid lifts it off the sealed one, and reaches the whole annulus behind it."""
+
+import math
+
+import numpy as np
+import pytest
+
+import ngwear as nw
+
+ROD, BORE = 22.0, 30.0
+POINTS = [(0.0, 11.15), (1.8, 11.15), (4.6, 10.6), (4.9, 10.6), (6.0, 11.6), (6.0, 12.2), (2.5, 12.2)]
+POINTS += [(2.5, 13.8), (6.0, 13.8), (6.0, 14.7), (4.9, 15.4), (4.6, 15.4), (1.8, 14.9), (0.0, 14.9)]
+NAMES = ["air bottom", "lip back", "lip tip", "lip front", "lip end", "u bottom", "u root", "u top"]
+NAMES += ["outer end", "outer front", "outer tip", "outer back", "air top", "heel"]
+INLET = ["lip end", "u bottom", "u root", "u top", "outer end"]
+
+
+@pytest.fixture(scope="module")
+def cup():
+    """Without room along the axis; each stroke holds a pressure."""
+    outline = nw.Outline(np.array(POINTS), tuple(NAMES), np.ones(len(POINTS), dtype=bool))
+    shoulders = [
+        nw.Contact("air shoulder", surface=nw.Plane(point=(0.0, 0.0), normal_vector=(1.0, 0.0))),
+        nw.Contact("sealed shoulder", surface=nw.Plane(point=(5.95, 0.0), normal_vector=(-1.0, 0.0))),
+    ]
+    scene = nw.Scene(
+        "U-cup",
+        nw.Part(outline, material=nw.NeoHooke(shear=8.0, bulk_modulus=4000.0)),
+        contacts=[
+            nw.Contact("rod", surface=nw.rod(diameter=ROD), refine=True),
+            nw.Contact("gland", surface=nw.bore(diameter=BORE), refine=True),
+            *shoulders,
+        ],
+        fluid=nw.Fluid(edges=NAMES[:-1], inlet=INLET),
+        program=nw.Program(
+            strokes=6,
+            cycle=[nw.Stroke(f"hold {p:g}", direction=0, travel=1.0, pressure=p) for p in (0.0, 0.5, 6.0)],
+        ),
+        accuracy=nw.Accuracy.preset("engineering"),
+    )
+    stepper = nw.Stepper(scene)
+    return stepper, stepper.start()
+
+
+def axial(report):
+    """Force of the fluid along the axis [N]."""
+    return -float(report.forces["fluid"][0])
+
+
+def test_it_reaches_the_whole_annulus(cup):
+    _, state = cup
+    _, little, much = state.reports
+    annulus = math.pi / 4 * (BORE**2 - ROD**2)
+    assert axial(little) < 0.97 * 0.5 * annulus, "the sealed shoulder dams it"
+    assert axial(much) == pytest.approx(6.0 * annulus, rel=5e-3)
+    assert np.abs(much.forces["sealed shoulder"]).max() < 1e-9
+    assert not much.leaks
+
+
+def test_the_next_cycle_starts_behind_the_contacts_that_it_has_passed(cup):
+    stepper, state = cup
+    places = [phase.passed for phase in state.phases]
+    assert places[0] is None
+    assert np.isfinite(places[2]).any()
+    state = stepper.advance(state)
+    assert axial(state.reports[-1]) == pytest.approx(axial(cup[1].reports[-1]), rel=1e-4)
+    np.testing.assert_array_equal(np.isfinite(state.phases[2].passed), np.isfinite(places[2]))
+
+
+def test_a_stage_takes_the_places_to_its_own_mesh(cup):
+    _, state = cup
+    stage, places = state.stage, state.phases[2].passed
+    stage.let_fluid_pass(places)
+    known = np.isfinite(places)
+    assert np.abs(stage.fluid_passed()[known] - places[known]).max() < 1e-12
+    stage.let_fluid_pass(None)
+    assert stage.fluid_passed() is None
