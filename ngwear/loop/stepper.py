@@ -96,22 +96,7 @@ class Stepper:
         control = JumpControl(tolerances.wear_error, depth=tolerances.depth_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
-        problem = stage.problem
-        phases = len(scene.program.cycle)
-        state.work.add(mount(stage, self.on_mount))
-        if self._lost_elements is not None:
-            self._lost_elements.begin(state)
-        for i, stroke in enumerate(scene.program.cycle):
-            stage.begin(problem.state.vec.FV().NumPy())
-            path: list[tuple[float, Array]] = []
-            on_step = recorder(problem, path)
-            work = advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5), on_step=on_step)
-            state.work.add(work)
-            needed = i > 0 and work.retries > 0 and stage.has_stick_slip and scene.deactivation is None
-            state.phases.append(
-                Phase(problem.state.vec.FV().NumPy().copy(), path=path if needed else [], passed=stage.fluid_passed())
-            )
-            self.on_mount(0.7 + 0.2 * (i + 1) / phases)
+        self._first_cycle(state, self.on_mount)
         refuse_idle_contacts(state)
         if scene.deactivation is None:
             self._refine(state)
@@ -122,6 +107,25 @@ class Stepper:
             give_memory(state, scene, arms)
         self.on_mount(1.0)
         return state
+
+    def _first_cycle(self, state: State, on_mount: Callable[[float], None]) -> None:
+        """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
+        stage, cycle = state.stage, self.scene.program.cycle
+        problem = stage.problem
+        state.phases = []
+        state.work.add(mount(stage, on_mount))
+        if self._lost_elements is not None:
+            self._lost_elements.begin(state)
+        for i, stroke in enumerate(cycle):
+            stage.begin(problem.state.vec.FV().NumPy())
+            path: list[tuple[float, Array]] = []
+            on_step = recorder(problem, path)
+            work = advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5), on_step=on_step)
+            state.work.add(work)
+            needed = i > 0 and work.retries > 0 and stage.has_stick_slip and self.scene.deactivation is None
+            vector = problem.state.vec.FV().NumPy().copy()
+            state.phases.append(Phase(vector, path=path if needed else [], passed=stage.fluid_passed()))
+            on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
 
     def _refine(self, state: State) -> None:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
@@ -145,7 +149,15 @@ class Stepper:
                 state.stage.scene = before
                 break
             remesh(state, scene=scene if floats else None)
-            self._settle_cycle(state)
+            try:
+                self._settle_cycle(state)
+            except ConvergenceError as error:
+                if not floats:
+                    raise
+                log.info("%s: mounting anew on this mesh", error)
+                state.stage.problem.state.vec[:] = 0.0
+                self._first_cycle(state, lambda fraction: None)
+                self._settle_cycle(state)
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
