@@ -82,6 +82,7 @@ class FluidPressure(Term):
         self._lengths = body.contour.arc_lengths(*line.t.T)
         self._middles = body.base.at(line.t.ravel()).reshape(-1, 2, 2).mean(axis=1)
         self._passed, self._reached = [0, 0], [0, 0]  # edges of each way
+        self._drained = [False, False]
         self._paths = []
         for step in (1, -1):
             path = [int(np.flatnonzero(inlet & ~np.roll(inlet, -step))[0])]
@@ -98,7 +99,7 @@ class FluidPressure(Term):
         share = np.where(self._inlet, 1.0, 0.0)
         self.leaks = False
         if self.pressure.Get() == 0.0:
-            self._passed = [0, 0]
+            self._passed, self._drained = [0, 0], [False, False]
         elif self._solved:
             self._pass(touching)
         for k, (step, path) in enumerate(self._paths):
@@ -124,7 +125,8 @@ class FluidPressure(Term):
     def _pass(self, touching: np.ndarray) -> None:
         """Let the fluid into contacts that it lifts: the next edges of ``_passed`` are those that hold it.
 
-        A contact that has closed in front of a gap that the fluid fills does not drain it.
+        A contact that closes in front of a gap that the fluid fills may drain it once, as while a load step settles;
+        then no more, or the front would go to and fro.
 
         An edge holds it if the surroundings press it, or the next one, as hard as the fluid would: at the contact's end
         the pressure jumps from zero to the fluid's within a mesh edge, which carries less of it. On an edge that the
@@ -142,7 +144,9 @@ class FluidPressure(Term):
             if len(stop) == 0:
                 continue
             filled = np.flatnonzero(~touching[path[: self._reached[k]]])
-            if len(filled) and filled[-1] > stop[0]:
+            if len(filled) and filled[-1] > stop[0] and not self._drained[k]:
+                self._drained[k] = True
+            elif len(filled) and filled[-1] > stop[0]:
                 self._passed[k] = int(filled[-1]) + 1
                 stop = stop[stop >= self._passed[k]]
                 if len(stop) == 0:

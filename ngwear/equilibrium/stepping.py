@@ -11,7 +11,8 @@ from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
 
-SHORTEST = 1 / 64  # of the load of a fluid that floods a gap at once: a step below which the load step is cut instead
+# A fluid floods a gap at once, however short the load step: from SHORT on, its load is applied in steps to SHORTEST.
+SHORT, SHORTEST = 1 / 8, 1 / 64
 LOOSER = 1e3  # tolerance of a solve on the way over the last one's, if it only starts the next
 
 
@@ -59,16 +60,18 @@ class Work:
         self.retries += other.retries
 
 
-def settle(problem: Problem, options: StepOptions, work: Work, *, update: bool = True) -> Report:
+def settle(
+    problem: Problem, options: StepOptions, work: Work, *, update: bool = True, gradually: bool = False
+) -> Report:
     """Solve at the present loads, again while a term (the fluid front) asks for it, if ``update``.
 
-    If what a term changes is too much for one solve, its load is applied in steps.
+    If what a term changes is too much for one solve, its load is applied in steps if ``gradually``.
     """
     for updates in range(options.max_updates):
         report = solve(problem, options.newton)
         work.count(report)
         if not report.converged:
-            if updates == 0 or not update or IMBALANCE in problem.get_loads():
+            if updates == 0 or not update or not gradually or IMBALANCE in problem.get_loads():
                 return report
             try:
                 work.add(relax(problem, replace(options, first=0.25, smallest=SHORTEST)))
@@ -124,10 +127,11 @@ def advance(
         # With an imbalance load the fluid front stays: moving it would change that load.
         update = IMBALANCE not in target or goal == 1.0
         here = options if goal == 1.0 else on_the_way
-        report = settle(problem, here, work, update=update)
+        gradually = step <= SHORT  # a longer one is halved first
+        report = settle(problem, here, work, update=update, gradually=gradually)
         if have_rate and not report.converged and report.outcome is Outcome.BAD_START:
             vector.data = last
-            report = settle(problem, here, work, update=update)
+            report = settle(problem, here, work, update=update, gradually=gradually)
         if not report.converged:
             vector.data = last
             have_rate = False
