@@ -168,6 +168,8 @@ class FluidPressure(Term):
 
     @passed.setter
     def passed(self, places: np.ndarray) -> None:
+        # A stroke begins: nothing of the last one but these places counts, so that a resumed run goes the same way.
+        self._reached, self._drained = [0, 0], [False, False]
         for k, (_, path) in enumerate(self._paths):
             known = bool(np.isfinite(places[k]).all())
             apart = np.linalg.norm(self._middles[path] - places[k], axis=1) if known else np.zeros(1)

@@ -130,7 +130,7 @@ class Stepper:
     def _refine(self, state: State) -> None:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
         ahead, levels = remaining_sliding(state), 4  # more remeshes improve little here; the run remeshes where it must
-        floats, coarser = bool(state.stage.floats), True
+        floats = bool(state.stage.floats)
         while state.ledger.remeshes < levels:
             vectors, before = [phase.vector for phase in state.phases], state.stage.scene
             first = state.across is not None and state.ledger.remeshes == 0  # the mounting mesh may also be too fine
@@ -140,8 +140,7 @@ class Stepper:
             elif floats:
                 scene = self.scene
             wanted, had = scene.accuracy.lengths.patch, before.accuracy.lengths.patch
-            coarser = floats and wanted < had / AT_ONCE
-            if coarser:
+            if floats and wanted < had / AT_ONCE:
                 scene, levels = with_patch(scene, had / AT_ONCE), levels + 1
             state.stage.scene = scene
             narrow = wanted < NARROWER * had
