@@ -109,6 +109,14 @@ class Term(abc.ABC):
         """
         return False
 
+    def round_off(self, relative: float) -> bool:
+        """Round off the corners of the law over ``relative`` times the shear modulus; 0: not. True if the term can."""
+        return False
+
+    def hold_back(self, strength: float) -> bool:
+        """Hold the part at its present state with springs of this strength [-]; 0: none. True if the term can."""
+        return False
+
     def refresh(self) -> bool:
         """After a solve, update the quantities that were fixed in it; True if another solve is necessary."""
         return False

@@ -9,6 +9,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
 from ngwear.effects.contact import OutlineContact
+from ngwear.effects.rounding import Rounding
 
 # Of G / L. Far below the stiffness of a wall, and of a ring that rolls (about 1e-2), so that an iteration leaves little
 # of the error; far above rounding.
@@ -51,6 +52,9 @@ class RigidMotion(Term):
         self.directions, self.contacts, self.modulus = tuple(directions), tuple(contacts), modulus
         self.strength = ng.Parameter(1.0)
         self._second = False
+        self._hold = ng.Parameter(0.0)
+        for contact in self.contacts:
+            contact.rounding = Rounding(modulus)
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         u, v = unknowns.u, unknowns.v
@@ -60,6 +64,9 @@ class RigidMotion(Term):
         stiffness = STIFFNESS * self.modulus / self._size
         work = sum((u[i] - self._now[i]) * v[i] for i in self.directions)
         form += (self.strength * stiffness * unknowns.kinematics.weight * work).Compile() * ng.ds
+        self._held_at = ng.GridFunction(self._state.space)
+        held = sum((u[i] - self._held_at[i]) * v[i] for i in range(2))
+        form += (self._hold * self.modulus / self._size * unknowns.kinematics.weight * held).Compile() * ng.ds
         self._shift = []
         for i in self.directions:
             self._now.Set(ng.CF(tuple(1.0 if k == i else 0.0 for k in range(2))))
@@ -70,6 +77,11 @@ class RigidMotion(Term):
         self.strength.Set(FOLLOWS * FIRST if self._second else 1.0)
         for contact in self.contacts:
             contact.new_points_slip.Set(float(self._second))
+        return True
+
+    def hold_back(self, strength: float) -> bool:
+        self._hold.Set(strength)
+        self._held_at.vec.data = self._state.vec
         return True
 
     def gather(self) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
 from ngwear.effects.friction import Friction
+from ngwear.effects.rounding import Rounding
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.geometry.meshed import Meshed
 from ngwear.laws import FrictionLaw
@@ -64,7 +65,12 @@ class StickSlip(Friction):
         stretch = unknowns.kinematics.area_stretch(unknowns.u, ng.Grad(unknowns.u).Trace())
         bound = self.coefficient(p / stretch) * ng.IfPos(p, p, 0.0)
         again = ng.IfPos(contact.new_points_slip, bound * AT_WILL, RETURN * bound)
-        laws = _laws(tractions, self._slips(unknowns.trial, tangents), bound=bound, give=give, again=again)
+        slips = self._slips(unknowns.trial, tangents)
+        laws = _laws(tractions, slips, bound=bound, give=give, again=again)
+        if contact.rounding is not None and len(laws) == 1:
+            bound = self.coefficient(p / stretch) * contact.rounding.positive(p)
+            rounded = _rounded_law(tractions[0], slips[0], bound=bound, give=give, rounding=contact.rounding)
+            laws = [contact.rounding.choose(rounded, laws[0])]
         virtual = contact.virtual(unknowns)
         work = sum(a * sum(t[i] * v for i, v in enumerate(virtual)) for a, t in zip(tractions, tangents, strict=True))
         law = sum(law * unknowns.test[name] for law, name in zip(laws, self.tractions, strict=True))
@@ -155,3 +161,17 @@ def _laws(
         ng.IfPos(bound - length, s + 1e-6 * give * t, (t - bound * a / length) / stiff)
         for t, s, a in zip(tractions, slips, turned, strict=True)
     ]
+
+
+def _rounded_law(
+    traction: ng.CoefficientFunction,
+    slip: ng.CoefficientFunction,
+    *,
+    bound: ng.CoefficientFunction,
+    give: ng.CoefficientFunction,
+    rounding: Rounding,
+) -> ng.CoefficientFunction:
+    """``(T - t) give / 2`` [mm], where t is the trial traction ``T - 2 s / give`` cut off at both limits, rounded."""
+    trial = traction - 2 / give * slip
+    beyond = rounding.positive(trial - bound) - rounding.positive(-trial - bound)
+    return slip + 0.5 * give * beyond + 1e-6 * give * traction

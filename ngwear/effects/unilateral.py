@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.rounding import Rounding
 from ngwear.geometry.meshed import Meshed
 from ngwear.surfaces import RigidSurface
 
@@ -62,6 +63,8 @@ class UnilateralContact(Term):
     pressure_wear : PressureWear or None
         To be set before the contact is added to a form: a law of wear other than Archard's, by which kappa p becomes
         ``kappa p phi(p)``.
+    rounding : Rounding or None
+        To be set before the contact is added to a form, if ``round_off`` is to work.
     finest : float
         Shortest of ``lengths`` [mm], once it has been added to a form.
     softness : ng.Parameter
@@ -86,6 +89,7 @@ class UnilateralContact(Term):
         self.modulus = modulus
         self.softness = ng.Parameter(1.0)
         self.new_points_slip = ng.Parameter(0.0)
+        self.rounding: Rounding | None = None
         self.compliance = ng.Parameter(0.0)
         self.slips_in_part = False
         self.share: ng.GridFunction | None = None
@@ -187,6 +191,8 @@ class UnilateralContact(Term):
         pushed = p - c * (gap if worn is None else gap + worn)
         closure = 1 + c * (1e-6 * give + kappa / stretch)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
+        if self.rounding is not None:
+            active = self.rounding.choose(self.rounding.square(pushed) / closure, active)
         energy = (active - p * p) / (2 * c) * kinematics.weight
         form += ng.Variation(energy.Compile() * self.measure())
         if self.force_controlled:
@@ -213,6 +219,12 @@ class UnilateralContact(Term):
 
     def attempt(self, number: int) -> bool:
         self.softness.Set(SOFTNESS[number])
+        return True
+
+    def round_off(self, relative: float) -> bool:
+        if self.rounding is None:
+            return False
+        self.rounding.set(relative)
         return True
 
     def prepare(self) -> None:

@@ -146,6 +146,10 @@ class DirectSolver:
         """Norm of a residual, scaled so that displacements and other unknowns have equal weight."""
         return float(np.linalg.norm((self._unit * residual.FV().NumPy())[self._mask]))
 
+    def scaled_length(self, correction: ng.BaseVector) -> float:
+        """Norm of a correction, scaled so that displacements and other unknowns have equal weight."""
+        return float(np.linalg.norm((correction.FV().NumPy() / self._scale)[self._mask]))
+
     def solve(self, right_side: ng.BaseVector, solution: ng.BaseVector) -> float:
         """Solve into ``solution``; return the relative residual (inf if not finite)."""
         scaled, rest = right_side.CreateVector(), right_side.CreateVector()

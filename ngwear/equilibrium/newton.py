@@ -11,7 +11,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.unilateral import UnilateralContact
-from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE, norm
+from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE, DirectSolver, norm
 from ngwear.equilibrium.problem import Problem
 
 
@@ -26,8 +26,7 @@ class Outcome(enum.Enum):
     BAD_START = "the start state has inverted elements: start from a state closer to the solution"
 
 
-ATTEMPTS = 2  # of a solve: what the terms change in the second one, ``Term.attempt`` says
-SECOND_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
+SHORTEST = 1 / 64  # of a damped correction; it is taken even if the next one is longer
 HALVINGS = 7  # of a correction that would fold an element: to 1/64 of it; shorter ones get nowhere
 # The next four change the time, hardly the result: settled on the rod seal and the shaft, whose
 # steps took 5.2 iterations with LEAVES = 0.01 and 4.7 with 0.02 (``verify shaft_on_plate``; tutorial 2 for SMALL).
@@ -54,12 +53,15 @@ class NewtonOptions:
     reuse : bool
         Start with the tangent of the previous solve, and reuse it as long as the corrections reduce the residual fast.
         The share of the residual that a correction leaves is the ratio of the next correction to it.
+    damped : bool
+        Halve a correction until the next one is shorter. Only for smooth laws: at a corner the next one may be longer.
     """
 
     tolerance: float = 1e-7  # of the section: 0.5 nm of one of 5 mm
     pressure_tolerance: float = 1e-3  # what is left after it is about its square
     max_iterations: int = 25  # a solve takes four to eight
     reuse: bool = False
+    damped: bool = False
 
 
 @dataclass
@@ -82,35 +84,11 @@ class Report:
         return f"{self.outcome.value} (iterations {self.iterations}; last displacement corrections [mm] {steps})"
 
 
-def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
-    """Bring the problem's state to equilibrium under its present loads.
+def iterate(problem: Problem, options: NewtonOptions) -> Report:
+    """Newton's iteration from the problem's state, under its present loads; on failure the state is anything.
 
-    On failure the state is put back to where it was. Iterates whose energy is not finite (J <= 0
-    somewhere) are refused and the correction is halved, a few times. A solve that does not converge is tried once more
-    in another way (``Term.attempt``).
+    Iterates whose energy is not finite (J <= 0 somewhere) are refused and the correction is halved, a few times.
     """
-    options = options or NewtonOptions()
-    for term in problem.terms:
-        term.prepare()
-    start = problem.state.vec.CreateVector()
-    start.data = problem.state.vec
-    wasted = 0
-    for attempt in range(ATTEMPTS):
-        if not any([term.attempt(attempt) for term in problem.terms]) and attempt > 0:
-            break
-        with problem.threads():
-            report = _iterate(problem, options)
-        report.iterations += wasted
-        wasted = report.iterations
-        if report.converged:
-            break
-        problem.state.vec.data = start
-        if report.outcome not in SECOND_MAY_HELP:
-            break
-    return report
-
-
-def _iterate(problem: Problem, options: NewtonOptions) -> Report:
     size, edges = problem.body.size, [t.finest for t in problem.terms if isinstance(t, UnilateralContact)]
     nearly = min([NEARLY * options.tolerance * size, *(SMALL * edge for edge in edges)])
     u = problem.part(DISPLACEMENT)
@@ -148,6 +126,10 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
         else:
             report.outcome = Outcome.FOLDED
             break
+        if options.damped and not kept:
+            step = _damped(problem, solver, correction, trial, step)
+            problem.residual(residual)
+            report.residual = norm(residual)
         left = min(1.0, solver.scaled_norm(residual) / before) if before > 0 else 1.0
         change = step * float(np.abs(correction.FV().NumPy()[u]).max())
         report.corrections.append(change)
@@ -162,6 +144,28 @@ def _iterate(problem: Problem, options: NewtonOptions) -> Report:
             report.outcome = Outcome.STALLED
             break
     return report
+
+
+def _damped(
+    problem: Problem, solver: DirectSolver, correction: ng.BaseVector, start: ng.BaseVector, step: float
+) -> float:
+    """Share of a correction after which the next one, by the same tangent, is shorter; the state is set to it.
+
+    The natural monotonicity test, independent of the units of the equations (Deuflhard, *Newton Methods for Nonlinear
+    Problems*, 2004, section 3.3).
+    """
+    state, length = problem.state.vec, solver.scaled_length(correction)
+    residual, following = state.CreateVector(), state.CreateVector()
+    while True:
+        state.data = start - step * correction
+        problem.residual(residual)
+        if math.isfinite(norm(residual)):
+            solver.solve(residual, following)
+            if solver.scaled_length(following) <= (1 - step / 4) * length:
+                return step
+        if step <= SHORTEST:
+            return step
+        step /= 2
 
 
 def _settled(

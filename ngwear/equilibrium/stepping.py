@@ -6,8 +6,9 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
+from ngwear.equilibrium.attempts import solve
 from ngwear.equilibrium.diagnosis import diagnosis
-from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, solve
+from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
 

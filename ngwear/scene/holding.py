@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any
 
-from ngwear.scene.scene import Scene
+import numpy as np
 
 AGAINST = 0.5  # cosine: a surface whose normal is nearer to a direction holds the part in it
 
 
-def free_directions(scene: Scene) -> tuple[int, ...]:
+def free_directions(scene: Any) -> tuple[int, ...]:
     """Components of the displacement, 0 for x and 1 for y, in which nothing holds the unworn part.
 
     A support holds it, and two surfaces that touch or overlap the section as drawn from opposite sides. The hoop

@@ -15,6 +15,7 @@ from ngwear.scene.boundary import Fluid, Support
 from ngwear.scene.checks import refuse_in_scene
 from ngwear.scene.contact import ANY_EDGE, Contact
 from ngwear.scene.deactivation import Deactivation
+from ngwear.scene.holding import free_directions
 from ngwear.scene.options import Save, Wear
 from ngwear.scene.part import Part
 from ngwear.scene.program import Program
@@ -91,6 +92,8 @@ class Scene:
         refuse_in_scene(self)
         for contact in self.contacts:
             self._check_side(contact)
+        if free_directions(self):  # it may roll onto any edge
+            object.__setattr__(self, "contacts", tuple(replace(c, edges=known) for c in self.contacts))
 
     def write(self, path: Path | str) -> None:
         """Write the scene to a ``.toml`` file and its outline beside it (``ngwear.scene.write_scene``).

@@ -7,7 +7,8 @@ from collections.abc import Callable, Iterable
 import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT
-from ngwear.equilibrium.newton import NewtonOptions, solve
+from ngwear.equilibrium.attempts import solve
+from ngwear.equilibrium.newton import NewtonOptions
 from ngwear.errors import ConvergenceError
 from ngwear.geometry.cells import Cells, Index, Mask, outlined
 from ngwear.geometry.element_body import ElementBody

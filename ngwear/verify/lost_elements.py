@@ -20,8 +20,8 @@ from scipy.sparse import csr_array
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.elasticity import Elasticity
+from ngwear.equilibrium.attempts import solve
 from ngwear.equilibrium.lost_elements_transfer import transfer_to_remaining
-from ngwear.equilibrium.newton import solve
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.fields.kinematics import PlaneStrain

@@ -15,7 +15,7 @@ import numpy as np
 
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
-from ngwear.equilibrium.newton import solve
+from ngwear.equilibrium.attempts import solve
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body

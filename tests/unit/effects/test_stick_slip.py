@@ -8,7 +8,7 @@ from ngwear.effects.contact_patch import PatchContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.stick_slip import StickSlip
-from ngwear.equilibrium.newton import solve
+from ngwear.equilibrium.attempts import solve
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance, relax
 from ngwear.errors import SceneError

@@ -7,8 +7,9 @@ from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
+from ngwear.equilibrium.attempts import solve
 from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE, DirectSolver
-from ngwear.equilibrium.newton import NewtonOptions, Outcome, solve
+from ngwear.equilibrium.newton import NewtonOptions, Outcome
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import ConvergenceError, SceneError

@@ -1,0 +1,154 @@
+"""One equilibrium: by Newton's method, by another way into contact if that fails, and by rounded laws at last."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import ngsolve as ng
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT
+from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, iterate
+from ngwear.equilibrium.problem import Problem
+
+ATTEMPTS = 2  # before the laws are rounded off: what the terms change in the second one, ``Term.attempt`` says
+MORE_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
+# The rest changes the way and its time only. Settled on sections of ``tests/stability/foreign.py`` that failed before:
+# seed 0, indices 3, 6, 11, 13 and 15.
+ROUNDED = (0.1, 1.0, 0.01)  # of G: the first one that converges is the start
+SHARPER = 0.2  # times the rounding before; the root of it after a failure
+SHARP = 1e-4  # of G: from here to the corner itself
+# Strength of springs that hold the part back, in G / L: the first one as stiff as the part.
+FIRST, LOOSE = 1.0, 2e-4
+WEAKER, LEAST, GROWS = 4.0, 1.3, 1.2  # factor between two steps, and the least one; its growth after an easy step
+STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a strength: an equilibrium is near
+EASY, FAILURES, MOST = 10, 4, 200  # iterations of a step that may get longer; failures, and iterations, until it ends
+
+
+def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
+    """Bring the problem's state to equilibrium under its present loads.
+
+    On failure the state is put back to where it was. A solve that does not converge is tried once more in another way
+    (``Term.attempt``), then with the corners of the laws rounded off, if terms can do that (``Term.round_off``).
+    """
+    options = options or NewtonOptions()
+    for term in problem.terms:
+        term.prepare()
+    start = problem.state.vec.CreateVector()
+    start.data = problem.state.vec
+    wasted = 0
+    with problem.threads():
+        for attempt in range(ATTEMPTS):
+            if not any([term.attempt(attempt) for term in problem.terms]) and attempt > 0:
+                break
+            report = iterate(problem, options)
+            report.iterations += wasted
+            wasted = report.iterations
+            if report.converged:
+                return report
+            problem.state.vec.data = start
+            if report.outcome not in MORE_MAY_HELP:
+                return report
+        if not _round_off(problem, 0.0):
+            return report
+        for term in problem.terms:
+            term.attempt(0)
+        rounded = _by_rounded_laws(problem, replace(options, damped=True))
+    if rounded.converged:
+        rounded.iterations += wasted
+        return rounded
+    report.iterations += rounded.iterations
+    problem.state.vec.data = start
+    return report
+
+
+def _round_off(problem: Problem, relative: float) -> bool:
+    return any([term.round_off(relative) for term in problem.terms])
+
+
+def _by_rounded_laws(problem: Problem, options: NewtonOptions) -> Report:
+    """Round the laws off until a solve converges, then less and less, down to the corners; all corners are back then.
+
+    Where that leads to no neighbouring equilibrium, the part moves on to another one (``_move_over``).
+    """
+    total, rounding, sharper = 0, math.inf, SHARPER
+    good = problem.state.vec.CreateVector()
+    good.data = problem.state.vec
+    firsts = list(ROUNDED)
+    goal = firsts.pop(0)
+    try:
+        while True:
+            _round_off(problem, goal)
+            report = iterate(problem, options)
+            total += report.iterations
+            if not report.converged:
+                problem.state.vec.data = good
+                if rounding == math.inf and firsts:
+                    goal = firsts.pop(0)
+                    continue
+                if rounding < math.inf and sharper == SHARPER and goal > 0:
+                    sharper = math.sqrt(SHARPER)
+                    goal = rounding * sharper
+                    continue
+                goal = goal if rounding < math.inf else ROUNDED[0]
+                _round_off(problem, goal)
+                report = _move_over(problem, options)
+                total += report.iterations
+                sharper = SHARPER
+            if not report.converged or goal == 0.0:
+                report.iterations = total
+                return report
+            good.data = problem.state.vec
+            rounding = goal
+            goal = goal * sharper if goal > SHARP else 0.0
+    finally:
+        _round_off(problem, 0.0)
+
+
+def _move_over(problem: Problem, options: NewtonOptions) -> Report:
+    """Follow the part through states out of equilibrium to the next equilibrium.
+
+    Each step holds it back by springs from its state before, weaker ones while that is easy, none in the end
+    (pseudo-transient continuation: Kelley & Keyes, *SIAM J. Numer. Anal.* 35 (1998) 508).
+    """
+    place = problem.part(DISPLACEMENT)
+    before = problem.state.vec.CreateVector()
+    strength, weaker, total, failures = FIRST, WEAKER, 0, 0
+    report = Report(Outcome.STALLED)
+    try:
+        while failures <= FAILURES and total <= MOST:
+            before.data = problem.state.vec
+            _hold_back(problem, strength)
+            report = iterate(problem, options)
+            total += report.iterations
+            if not report.converged:
+                problem.state.vec.data = before
+                failures += 1
+                strength = WEAKER * max(strength, LOOSE)
+                weaker = max(LEAST, math.sqrt(weaker))
+                continue
+            if strength == 0.0:
+                break
+            moved = _largest(problem.state.vec, before, place) / problem.body.size
+            if strength < LOOSE or (strength < NEARLY_LOOSE and moved < STANDS):
+                strength = 0.0
+            elif report.iterations <= EASY:
+                strength /= weaker
+                weaker = min(WEAKER, GROWS * weaker)
+    finally:
+        _hold_back(problem, 0.0)
+    report.iterations = total
+    if strength > 0.0 and report.converged:
+        report.outcome = Outcome.TOO_MANY_ITERATIONS
+    return report
+
+
+def _hold_back(problem: Problem, strength: float) -> None:
+    for term in problem.terms:
+        term.hold_back(strength)
+
+
+def _largest(one: ng.BaseVector, other: ng.BaseVector, place: slice) -> float:
+    """Largest difference of two states' displacements [mm]."""
+    return float(np.abs(one.FV().NumPy()[place] - other.FV().NumPy()[place]).max())
