@@ -20,7 +20,9 @@ from ngwear.scene.program import Stroke
 
 Array = NDArray[np.float64]
 
-DEEP = 0.01  # of the mesh edge there: overlap with a surface that does not list the edge
+DEEP = 0.01  # of the mesh edge there: overlap with a surface
+UNLISTED = ", whose edges do not name it: name it there, or give no edges, so that any may touch"
+COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node
 ALTERNATES = 4  # nodes in a row whose second difference changes sign: a smooth pressure does so once or twice
 UNBALANCED = 1e-5  # of the largest force: sum of all forces where no support takes a part of it
@@ -56,7 +58,7 @@ def findings(
 
 
 def _overlaps(stage: Stage) -> Iterator[Finding]:
-    """Nodes of the whole outline that lie inside a surface whose contact does not list their edges."""
+    """Nodes of the whole outline that lie inside a surface, whether its contact lists their edges or not."""
     body, line = stage.body, stage.body.outline
     parts = stage.problem.fields[DISPLACEMENT].components
     moved = np.column_stack([part.vec.FV().NumPy()[line.vertices[:, 0]] for part in parts])
@@ -66,16 +68,15 @@ def _overlaps(stage: Stage) -> Iterator[Finding]:
         listed = np.isin(line.names, contact.edges)
         listed |= np.roll(listed, 1)  # the node between two edges
         gap = _gap(contact, place)
-        depth = np.where(listed, 0.0, -gap)
-        worst = int(np.argmax(depth - DEEP * length))
-        if depth[worst] > DEEP * length[worst]:
-            edge, (x, y) = line.names[worst], place[worst]
-            yield Finding(
-                f"overlap {name} {edge}",
-                float(depth[worst]),
-                f"edge '{edge}' lies {depth[worst]:.3g} mm inside the surface of contact '{name}' at ({x:.4g}, "
-                f"{y:.4g}), whose edges do not name it: name it there, or give no edges, so that any may touch",
-            )
+        # In a contact that wears, a solve ends with the depth that it wears inside the surface.
+        resting = listed if not contact.wears else np.zeros_like(listed)
+        for among, advice in ((~listed, UNLISTED), (resting, COARSE)):
+            depth = np.where(among, -gap - DEEP * length, 0.0)
+            worst = int(np.argmax(depth))
+            if depth[worst] > 0:
+                edge, (x, y), deep = line.names[worst], place[worst], -float(gap[worst])
+                where = f"edge '{edge}' lies {deep:.3g} mm inside the surface of contact '{name}' at ({x:.4g}, {y:.4g})"
+                yield Finding(f"overlap {name} {edge}", deep, f"{where}{advice}")
 
 
 def _gap(contact: OutlineContact, place: Array) -> Array:
