@@ -57,6 +57,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
         rounded = _by_rounded_laws(problem, replace(options, damped=True))
     if rounded.converged:
         rounded.iterations += wasted
+        rounded.rounded = True
         return rounded
     report.iterations += rounded.iterations
     problem.state.vec.data = start

@@ -73,6 +73,7 @@ class Report:
     corrections: list[float] = field(default_factory=list)
     residual: float = math.nan
     linear_residual: float = 0.0
+    rounded: bool = False  # whether it went by rounded laws, which takes many iterations but bears large steps
 
     @property
     def converged(self) -> bool:
@@ -126,14 +127,14 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
         else:
             report.outcome = Outcome.FOLDED
             break
-        if options.damped and not kept:
+        goal, asked = options.tolerance * size, float(np.abs(correction.FV().NumPy()[u]).max())
+        if options.damped and not kept and asked > goal:  # below it, rounding decides which correction is shorter
             step = _damped(problem, solver, correction, trial, step)
             problem.residual(residual)
             report.residual = norm(residual)
         left = min(1.0, solver.scaled_norm(residual) / before) if before > 0 else 1.0
-        change = step * float(np.abs(correction.FV().NumPy()[u]).max())
+        change = step * asked
         report.corrections.append(change)
-        goal = options.tolerance * size
         # Far below the tolerance the displacement is exact, and further changes of pressure do no work.
         settled = change <= 1e-4 * goal or _settled(vector, correction, pressures, options.pressure_tolerance, left)
         leaves = change * _ratio(report.corrections) if kept and not options.reuse else 0.0

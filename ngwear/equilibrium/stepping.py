@@ -152,7 +152,7 @@ def advance(
             on_step(done, report)
         if report.iterations <= options.easy:
             step *= 2
-        elif report.iterations > 2 * options.easy:
+        elif report.iterations > 2 * options.easy and not report.rounded:
             step /= 2
     return work
 

@@ -22,6 +22,7 @@ class Contact:
     name : str
     edges : sequence of str
         Names of edges of the part's outline; default: any may touch (``"*"``, which a scene replaces by all names).
+        Of a part with room to move, any may touch whatever is named here.
     surface : RigidSurface
         In its final position; mounting moves it there from first touch.
     friction : FrictionLaw or float

@@ -26,6 +26,7 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.fluid_pressure import FluidPressure
 from ngwear.effects.friction import FullSliding
 from ngwear.effects.pressure_wear import PressureWear
+from ngwear.effects.rounding import Rounding
 from ngwear.effects.stick_slip import StickSlip
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.effects.viscosity import Viscosity
@@ -61,6 +62,7 @@ WEAR_LAWS = {
 SECTION = {"plane strain": PlaneStrain(), "axisymmetric": Axisymmetric()}
 SOLID = {"solid": Solid()}
 KINEMATICS = SECTION | SOLID
+ROUNDED = 0.5  # of G: some points are on the rounded part
 SURFACES = {
     "plane": Plane(point=(WIDTH / 2, TOP), normal_vector=(0.3, -1.0)),
     "cylinder": Cylinder(centre=(0.5, TOP + 2.5), radius=3.0),
@@ -162,6 +164,12 @@ def _cases() -> Iterator[tuple[str, Kinematics, list[Term]]]:
                 yield f"stick and slip{by}, {name}, {how}, {kin}", kinematics, [contact, sticks]
     for kin, kinematics in SECTION.items():
         yield f"fluid pressure, {kin}", kinematics, [_fluid()]
+        contact = _contact(SURFACES["plane"], True, 0.0)
+        contact.rounding = Rounding(contact.modulus)
+        contact.round_off(ROUNDED)
+        sticks = StickSlip(contact, FRICTION[""])
+        sticks.travel.Set(0.02)
+        yield f"stick and slip, corners rounded, {kin}", kinematics, [contact, sticks]
 
 
 def _fluid() -> FluidPressure:

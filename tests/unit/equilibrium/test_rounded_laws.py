@@ -1,0 +1,101 @@
+"""Laws rounded off lead to the same equilibrium as those with corners; so does a part that moves over to a wall."""
+
+import ngsolve as ng
+import numpy as np
+import pytest
+
+import ngwear as nw
+from ngwear.effects.rounding import Rounding
+from ngwear.equilibrium import attempts
+from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, iterate
+from ngwear.geometry.outline import Outline
+from ngwear.loop.stepper import Stepper
+from ngwear.surfaces import Plane
+
+MODULUS, PRESSURE, ROOM = 1.0, 0.3, 0.2
+
+
+def scene():
+    """A block that friction holds on a table and that the fluid pushes over to the wall on its left."""
+    table = nw.Contact(
+        "table",
+        edges=["bottom"],
+        surface=Plane(point=(0.0, 0.02), normal_vector=(0.0, 1.0)),
+        slides=False,
+        friction=0.1,
+    )
+    lid = nw.Contact("lid", edges=["top"], surface=Plane(point=(0.0, 0.98), normal_vector=(0.0, -1.0)), slides=False)
+    wall = nw.Contact("wall", edges=["left"], surface=Plane(point=(-ROOM, 0.0), normal_vector=(1.0, 0.0)), slides=False)
+    stroke = {"travel": 1.0, "pressure": PRESSURE}
+    return nw.Scene(
+        "block",
+        nw.Part(
+            Outline.rectangle((0.0, 2.0), (0.0, 1.0)), material=nw.NeoHooke(shear=MODULUS, bulk_modulus=100 * MODULUS)
+        ),
+        contacts=[table, lid, wall],
+        axisymmetric=False,
+        fluid=nw.Fluid(edges=["right"], inlet=["right"]),
+        program=nw.Program(strokes=2, cycle=[nw.Stroke("out", direction=-1, **stroke)]),
+        accuracy=nw.Accuracy(patch=0.2, coarse=0.5, mounting=0.2),
+    )
+
+
+def solved():
+    stepper = Stepper(scene())
+    return stepper.start().stage
+
+
+@pytest.mark.parametrize("width", [0.1, 2.0])
+def test_the_rounded_corner_is_the_derivative_of_its_square_and_the_corner_elsewhere(width):
+    section = Outline.rectangle((0.0, 1.0), (0.0, 1.0))
+    assert len(section.points) == 4
+    rounding, x = Rounding(MODULUS), ng.Parameter(0.0)
+    rounding.set(width)
+    positive, square = rounding.positive(x), rounding.square(x)
+    mesh = ng.Mesh(_unit_square())
+
+    def at(value, expression):
+        x.Set(value)
+        return expression(mesh(0.5, 0.5))
+
+    for value in (-2 * width, -0.5 * width, 0.3 * width, 3 * width):
+        step = 1e-5 * width
+        slope = (at(value + step, square) - at(value - step, square)) / (2 * step)
+        assert slope == pytest.approx(2 * at(value, positive), abs=1e-6 * width)
+        if abs(value) > width:
+            assert at(value, positive) == max(0.0, value)
+
+
+def _unit_square():
+    from netgen.geom2d import unit_square
+
+    return unit_square.GenerateMesh(maxh=1.0)
+
+
+def test_rounded_laws_end_at_the_equilibrium_of_the_laws_with_corners(monkeypatch):
+    plain = solved()
+    tried = []
+
+    def only_damped(problem, options):
+        if not options.damped:
+            return Report(Outcome.STALLED)
+        tried.append(True)
+        return iterate(problem, options)
+
+    monkeypatch.setattr(attempts, "iterate", only_damped)
+    rounded = solved()
+    assert tried
+    # Friction that sticks remembers the load steps, which differ.
+    for name in plain.contacts:
+        assert rounded.contacts[name].force() == pytest.approx(plain.contacts[name].force(), rel=1e-4, abs=1e-6)
+
+
+def test_a_part_moves_over_to_the_wall_and_no_spring_is_left():
+    stage = solved()
+    problem = stage.problem
+    problem.state.vec[:] = 0.0
+    assert attempts._move_over(problem, NewtonOptions(damped=True)).converged
+    residual = problem.state.vec.CreateVector()
+    problem.residual(residual)
+    assert np.abs(residual.FV().NumPy()).max() < 1e-6 * PRESSURE
+    assert stage.contacts["wall"].force()[0] > 0.5 * PRESSURE
