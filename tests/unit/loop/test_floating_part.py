@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import ngwear as nw
+from ngwear.equilibrium import attempts
 from ngwear.errors import ConvergenceError
 from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run
@@ -95,8 +96,9 @@ def test_shipped_parts_are_held(folder):
 
 
 @pytest.mark.slow
-def test_a_ring_follows_the_load_steps_of_its_last_cycle():
+def test_a_ring_follows_the_load_steps_of_its_last_cycle(monkeypatch):
     """Where one step to the pressed ring fails, later cycles find it without a search of their own."""
+    monkeypatch.setattr(attempts, "_round_off", lambda problem, relative: False)  # with rounded laws it does not fail
     scene = nw.read_scene("geometries/o_ring/scene.toml")
     stepper = Stepper(replace(scene, accuracy=nw.Accuracy.preset("draft")))
     state = stepper.start()
