@@ -129,8 +129,7 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
             break
         goal, asked = options.tolerance * size, float(np.abs(correction.FV().NumPy()[u]).max())
         if options.damped and not kept and asked > goal:  # below it, rounding decides which correction is shorter
-            step = _damped(problem, solver, correction, trial, step)
-            problem.residual(residual)
+            step = _damped(problem, solver, correction, trial, step, residual)
             report.residual = norm(residual)
         left = min(1.0, solver.scaled_norm(residual) / before) if before > 0 else 1.0
         change = step * asked
@@ -148,25 +147,28 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
 
 
 def _damped(
-    problem: Problem, solver: DirectSolver, correction: ng.BaseVector, start: ng.BaseVector, step: float
+    problem: Problem,
+    solver: DirectSolver,
+    correction: ng.BaseVector,
+    start: ng.BaseVector,
+    step: float,
+    residual: ng.BaseVector,
 ) -> float:
-    """Share of a correction after which the next one, by the same tangent, is shorter; the state is set to it.
+    """Share of a correction, at most ``step``, after which the next one, by the same tangent, is shorter.
 
-    The natural monotonicity test, independent of the units of the equations (Deuflhard, *Newton Methods for Nonlinear
-    Problems*, 2004, section 3.3).
+    State and ``residual`` are those after ``step``, and of the share in the end. The natural monotonicity test,
+    independent of the units of the equations (Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, section 3.3).
     """
     state, length = problem.state.vec, solver.scaled_length(correction)
-    residual, following = state.CreateVector(), state.CreateVector()
-    while True:
+    following = state.CreateVector()
+    while step > SHORTEST:
+        solver.solve(residual, following)
+        if solver.scaled_length(following) <= (1 - step / 4) * length:
+            break
+        step /= 2
         state.data = start - step * correction
         problem.residual(residual)
-        if math.isfinite(norm(residual)):
-            solver.solve(residual, following)
-            if solver.scaled_length(following) <= (1 - step / 4) * length:
-                return step
-        if step <= SHORTEST:
-            return step
-        step /= 2
+    return step
 
 
 def _settled(

@@ -15,14 +15,12 @@ from numpy.typing import NDArray
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.effects.fluid_pressure import LESS
 from ngwear.loop.stage import Stage
 from ngwear.scene.program import Stroke
 
 Array = NDArray[np.float64]
 
-DEEP = 0.01  # of the mesh edge there: overlap with a surface that does not list the edge
-WAVES = 0.02  # of it, if the surface does: between its nodes the edge then lies off the surface by half as much
+DEEP = 0.01  # of the mesh edge there: overlap with a surface
 UNLISTED = ", whose edges do not name it: name it there, or give no edges, so that any may touch"
 COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node
@@ -72,8 +70,8 @@ def _overlaps(stage: Stage) -> Iterator[Finding]:
         gap = _gap(contact, place)
         # In a contact that wears, a solve ends with the depth that it wears inside the surface.
         resting = listed if not contact.wears else np.zeros_like(listed)
-        for among, share, advice in ((~listed, DEEP, UNLISTED), (resting, WAVES, COARSE)):
-            depth = np.where(among, -gap - share * length, 0.0)
+        for among, advice in ((~listed, UNLISTED), (resting, COARSE)):
+            depth = np.where(among, -gap - DEEP * length, 0.0)
             worst = int(np.argmax(depth))
             if depth[worst] > 0:
                 edge, (x, y), deep = line.names[worst], place[worst], -float(gap[worst])
@@ -136,7 +134,7 @@ def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     if fluid is None or fluid.leaks or not stroke.pressure > 0 or stage.leaking is not None:
         return  # of a scene that asks for the leak pressure, the recorder warns
     holds, edge = fluid.leak_pressure()
-    if holds < (1 - LESS) * stroke.pressure:
+    if holds < stroke.pressure:
         yield Finding(
             f"blow-by {stroke.name}",
             stroke.pressure - holds,
