@@ -131,20 +131,22 @@ class Stepper:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
         ahead, levels = remaining_sliding(state), 4  # more remeshes improve little here; the run remeshes where it must
         floats = bool(state.stage.floats)
+        provisional = state.across is not None  # the mounting mesh may also be too fine
         while state.ledger.remeshes < levels:
             vectors, before = [phase.vector for phase in state.phases], state.stage.scene
-            first = state.across is not None and state.ledger.remeshes == 0  # the mounting mesh may also be too fine
             scene = before
             if state.across is not None:
                 scene = with_contact_lengths(state.stage, vectors, state.across)
             elif floats:
                 scene = self.scene
             wanted, had = scene.accuracy.lengths.patch, before.accuracy.lengths.patch
+            enough = not provisional and wanted >= NARROWER * had
+            # A part with room to move is mounted on coarse elements: its contacts are found anew on the next ones.
+            provisional = floats and (state.ledger.remeshes == 0 or wanted < NARROWER * had)
             if floats and wanted < had / AT_ONCE:
                 scene, levels = with_patch(scene, had / AT_ONCE), levels + 1
             state.stage.scene = scene
-            narrow = wanted < NARROWER * had
-            if not (first or narrow or is_too_coarse(state.stage, vectors, **ahead)):
+            if enough and not is_too_coarse(state.stage, vectors, **ahead):
                 state.stage.scene = before
                 break
             remesh(state, scene=scene if floats else None)
