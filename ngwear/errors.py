@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from numbers import Integral, Real
 from typing import Any
@@ -68,6 +68,9 @@ def typed(place: str, value: Any, kind: str) -> Any:
     """
     if value is None and kind.endswith("| None"):
         return None
+    kind, either, named = kind.partition(" | Mapping[str, ")
+    if either and isinstance(value, Mapping):
+        return {str(name): typed(f"{place}.{name}", one, named.removesuffix("]")) for name, one in value.items()}
     for inner, one, example in _SEQUENCES:
         if kind.startswith((f"Sequence[{inner}]", f"tuple[{inner}")):
             values: Any = value.tolist() if hasattr(value, "tolist") else value

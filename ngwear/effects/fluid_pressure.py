@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import ngsolve as ng
 import numpy as np
@@ -20,8 +21,26 @@ STAYS = 5e-4  # of what the contacts carry: a change of the fluid's load with wh
 LESS = 0.05
 
 
+@dataclass(frozen=True)
+class BlowBy:
+    """A fluid that no contact holds.
+
+    Attributes
+    ----------
+    inlet, edge : str
+        Where it comes from, and the edge whose contact would hold it longest; without a contact the last edge.
+    pressure, holds : float
+        Pressure of the fluid, and the highest contact pressure on its way [MPa]; 0 without a contact.
+    """
+
+    inlet: str
+    edge: str
+    pressure: float
+    holds: float
+
+
 class FluidPressure(Term):
-    """Follower traction ``-chi p n`` on the wetted part of named edges.
+    """Follower traction ``-chi p n`` on the wetted part of named edges: the fluid from one inlet.
 
     chi is 1 from the inlet edges, in both directions along the outline, up to the first mesh edge in contact, and 0
     beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``). Treating such an
@@ -31,7 +50,8 @@ class FluidPressure(Term):
     contact holds ends at the highest contact pressure.
 
     chi is fixed in a solve and updated after it, until the change of load is below ``STAYS``. If the fluid reaches the
-    end of the named edges without a contact, ``leaks`` is True: the seal leaks.
+    end of the named edges without a contact, ``leaks`` is True: the seal leaks. Where it meets the fluid from another
+    inlet without a contact between them, the higher pressure acts on all edges between the two.
 
     Parameters
     ----------
@@ -41,6 +61,15 @@ class FluidPressure(Term):
         Edges that are always wetted.
     contacts : sequence of OutlineContact
         Contacts that can stop the fluid.
+    name : str
+        Name of the inlet.
+    held : sequence of str
+        Edges that are held in both directions, as if bonded: no fluid passes them.
+
+    Attributes
+    ----------
+    others : sequence of FluidPressure
+        The fluids from the other inlets; none at first.
 
     Raises
     ------
@@ -50,13 +79,23 @@ class FluidPressure(Term):
 
     symmetric = False
 
-    def __init__(self, edges: Sequence[str], inlet: Sequence[str], contacts: Sequence[OutlineContact]) -> None:
+    def __init__(
+        self,
+        edges: Sequence[str],
+        inlet: Sequence[str],
+        contacts: Sequence[OutlineContact],
+        *,
+        name: str = "fluid",
+        held: Sequence[str] = (),
+    ) -> None:
         super().__init__()
         self.edges, self.inlet, self.contacts = tuple(edges), tuple(inlet), tuple(contacts)
+        self.name, self.held = name, tuple(held)
+        self.others: tuple[FluidPressure, ...] = ()
         if not self.inlet or not set(self.inlet) <= set(self.edges):
             raise SceneError("fluid.inlet", list(self.inlet), f"must name some of the fluid's edges {list(self.edges)}")
         self.pressure = ng.Parameter(0.0)
-        self.loads = {"fluid pressure [MPa]": self.pressure}
+        self.loads = {f"{name} pressure [MPa]": self.pressure}
         self.leaks, self._solved = False, False
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
@@ -83,12 +122,17 @@ class FluidPressure(Term):
         self._middles = body.base.at(line.t.ravel()).reshape(-1, 2, 2).mean(axis=1)
         self._passed, self._reached = [0, 0], [0, 0]  # edges of each way
         self._drained = [False, False]
-        self._paths = []
+        self._paths, self._beyond = [], []
         for step in (1, -1):
             path = [int(np.flatnonzero(inlet & ~np.roll(inlet, -step))[0])]
-            while reach[(path[-1] + step) % m] and len(path) <= m:
+            while reach[(path[-1] + step) % m] and len(path) <= m and not self._at(line.names[(path[-1] + step) % m]):
                 path.append((path[-1] + step) % m)
             self._paths.append((step, np.array(path)))
+            self._beyond.append(str(line.names[(path[-1] + step) % m]))
+
+    def _at(self, edge: str) -> FluidPressure | None:
+        """The fluid from another inlet that has this edge."""
+        return next((other for other in self.others if edge in other.inlet), None)
 
     def refresh(self) -> bool:
         """Update the front; True if the change of load is above ``STAYS``.
@@ -108,6 +152,8 @@ class FluidPressure(Term):
             stop = stop[stop >= self._passed[k]]
             reached = int(stop[0]) if len(stop) else len(path)
             share[path[:reached]] = 1.0
+            if not len(stop) and self._yields(self._at(self._beyond[k])):
+                share[path] = np.where(self._inlet[path], 1.0, 0.0)
             self._reached[k] = reached if self.pressure.Get() > 0 else 0
             if len(stop) and stop[0] > 0:
                 share[path[stop[0]]] = outside[path[stop[0]], 0 if step == 1 else 1]
@@ -118,6 +164,10 @@ class FluidPressure(Term):
             field[self._unknown] = share
         self._solved = False
         return moved
+
+    def _yields(self, other: FluidPressure | None) -> bool:
+        """Whether the fluid from another inlet, which this one meets, has the higher pressure."""
+        return other is not None and (other.pressure.Get(), other.name) > (self.pressure.Get(), self.name)
 
     def prepare(self) -> None:
         self._solved = True
@@ -133,7 +183,7 @@ class FluidPressure(Term):
         fluid has wetted and that still touches, both press. Where none holds it, the fluid ends at the one that is
         pressed hardest.
         """
-        bears = self.pressure.Get() * self.shares
+        bears = sum((fluid.pressure.Get() * fluid.shares for fluid in self.others), self.pressure.Get() * self.shares)
         for contact in self.contacts:
             profile = contact.profile()
             pressure = profile.pressure[profile.edges].max(axis=1)
@@ -209,14 +259,34 @@ class FluidPressure(Term):
         with the lower maximum of contact pressure leaks first. The contact pressures are those of the present state; a
         fluid that presses the part against its contacts, as with an O-ring, increases them.
         """
-        highest = np.zeros(len(self._inlet))
+        first = min(self._ways(), key=lambda way: way.holds)
+        return first.holds, first.edge
+
+    def blow_by(self) -> BlowBy | None:
+        """Where no contact holds the fluid in the present state; None if all do.
+
+        That is where the highest contact pressure on its way is below the fluid's. A way that ends at a support, or at
+        an inlet with the same pressure or a higher one, is closed.
+        """
+        for way, beyond in zip(self._ways(), self._beyond, strict=True):
+            other = self._at(beyond)
+            closed = beyond in self.held or (other is not None and other.pressure.Get() >= way.pressure)
+            if way.holds < way.pressure and not closed:
+                return way
+        return None
+
+    def _ways(self) -> list[BlowBy]:
+        """What holds the fluid on each of its two ways."""
+        highest, names = np.zeros(len(self._inlet)), self._body.outline.names
         for contact in self.contacts:
             profile = contact.profile()
             pressure = profile.pressure[profile.edges].max(axis=1)
             highest[contact.positions] = np.maximum(highest[contact.positions], pressure)
-        closed = [path[highest[path].argmax()] for _, path in self._paths]
-        first = min(closed, key=lambda edge: highest[edge])
-        return float(highest[first]), str(self._body.outline.names[first])
+        found = []
+        for _, path in self._paths:
+            at = path[highest[path].argmax()] if highest[path].any() else path[-1]
+            found.append(BlowBy(self.name, str(names[at]), self.pressure.Get(), float(highest[at])))
+        return found
 
     def force(self) -> np.ndarray:
         """Resultant of the fluid on the part; shape (2,) [N], or N/mm in plane strain."""

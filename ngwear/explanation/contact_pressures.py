@@ -111,9 +111,9 @@ def _plain(scene: Scene) -> Scene:
 
 def _kinds(scene: Scene) -> list[Stroke]:
     """Strokes of the cycle that differ in direction, pressure or speed."""
-    found: dict[tuple[float, float, float | None], Stroke] = {}
+    found: dict[tuple[float, str, float | None], Stroke] = {}
     for stroke in scene.program.cycle:
-        found.setdefault((stroke.direction, stroke.pressure, stroke.speed), stroke)
+        found.setdefault((stroke.direction, repr(stroke.pressure), stroke.speed), stroke)
     return list(found.values())
 
 

@@ -76,7 +76,8 @@ def explain_wear(
         "numbers": {
             "element edge in the contact [mm]": scene.accuracy.lengths.patch,
             "K/G [-]": material.bulk_modulus / material.shear_modulus,
-            "highest sealed pressure / G [-]": max(s.pressure for s in scene.program.cycle) / material.shear_modulus,
+            "highest sealed pressure / G [-]": max(s.highest_pressure for s in scene.program.cycle)
+            / material.shear_modulus,
             "longest stroke / critical explicit wear distance [-]": max(s.travel for s in scene.program.cycle)
             / critical,
             **_memory_numbers(scene),
@@ -94,8 +95,9 @@ def _present(scene: Scene) -> dict[str, str]:
     frictions = [(c, law) for c in scene.contacts if (law := c.friction_law) is not None]
     present |= {f"friction at '{c.name}'": _friction_in_words(scene, c, law) for c, law in frictions}
     if scene.fluid is not None:
-        present["fluid pressure"] = f"from {', '.join(scene.fluid.inlet)} to the first point in contact"
-        if not any(stroke.pressure for stroke in scene.program.cycle):
+        inlets = ", ".join(edge for edges in scene.fluid.inlets.values() for edge in edges)
+        present["fluid pressure"] = f"from {inlets} to the first point in contact"
+        if not any(stroke.highest_pressure for stroke in scene.program.cycle):
             present["fluid pressure"] += (
                 "; no stroke has a pressure: without [fluid] the result is the same in less time"
             )

@@ -42,16 +42,21 @@ PLAIN = (
 
 def classes(scene: Scene) -> tuple[type, ...]:
     """Classes of the objects in a checkpoint of the scene; modules that the scene does not need are not imported."""
+    found: list[type] = list(PLAIN)
+    if scene.fluid is not None:
+        from ngwear.effects.fluid_pressure import BlowBy
+
+        found.append(BlowBy)
     if scene.deactivation is not None:
         from ngwear.geometry.element_body import ElementBody
 
-        return (*PLAIN, ElementBody)
+        return (*found, ElementBody)
     if scene.arms is None:
-        return (*PLAIN, Body)
+        return (*found, Body)
     from ngwear.fields.background_mesh import Background
     from ngwear.loop.memory_over_cycles import CycleMemory
 
-    return (*PLAIN, Body, Background, CycleMemory)
+    return (*found, Body, Background, CycleMemory)
 
 
 def save(folder: Folder, state: State, recorder: Recorder) -> None:

@@ -105,8 +105,7 @@ def contact_sizes(
             near = (pressure > 0) | (profile.gap < soon)
             ask = _spanned(contour, profile, near)
             size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
-        if stage.leaking is not None:
-            fronts.append(_beside(contour, stage.leaking.fronts(), lengths.patch))
+        fronts += [_beside(contour, fluid.fronts(), lengths.patch) for fluid in stage.leaking]
     vector[:] = keep
     ask, places = size < np.inf, np.vstack(fronts)
     seeds, sizes = np.vstack([contour.points[ask], places]), np.append(size[ask], np.full(len(places), lengths.patch))
@@ -163,7 +162,7 @@ def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
         off = stress[..., :5] - points.recovered(stress[..., :5])
         error = np.sqrt((points.volumes * (off**2).sum(axis=-1)).sum(axis=1) / (2 * elasticity.material.shear_modulus))
         energy = (points.volumes * elasticity.energy(strain)).sum()
-        if energy == 0.0:  # an unloaded part requires nothing
+        if energy <= 0.0:  # an unloaded part requires nothing; rounding may leave less than nothing
             continue
         share = tolerance * np.sqrt(energy / len(edge))
         edge = np.minimum(edge, points.edges * (share / np.maximum(error, 1e-12 * share)) ** power)

@@ -123,7 +123,13 @@ def run(
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
-    message = "all strokes done"
+    message, blown = "all strokes done", None if state is None else stepper.blown(state)
+    if state is not None and blown is not None:
+        message = (
+            f"ended by blow-by after stroke {scene.program.counted(state.strokes)}: the "
+            f"{blown.pressure:.3g} MPa of '{blown.inlet}' opens the contact "
+            f"at '{blown.edge}', which carries {blown.holds:.3g} MPa at most"
+        )
     if error is not None:
         done = None if state is None else scene.program.counted(state.strokes)
         message = f"{'the part cannot be mounted' if done is None else f'after stroke {done}'}: {error}"

@@ -34,12 +34,13 @@ def section_snapshot(stage: Stage) -> Arrays:
         "stress xx, yy, xy, zz [MPa]": recovered[:, :4],
         "maximum principal stretch [-]": recovered[:, 4],
     }
-    if stage.fluid is not None:
-        ends, share = body.outline.vertices, stage.fluid.shares
-        wet = share > 0
-        out["fluid pressure [MPa]"] = np.array(stage.fluid.pressure.Get())
-        out["wetted edges"] = np.column_stack([ends[wet, 0], nodes.middle(ends[wet]), ends[wet, 1]])
-        out["wetted share [-]"] = share[wet]
+    if stage.fluids:
+        ends, shares = body.outline.vertices, [fluid.shares for fluid in stage.fluids.values()]
+        inlet, edge = np.nonzero(np.array(shares) > 0)
+        out["fluid pressure [MPa]"] = np.array([fluid.pressure.Get() for fluid in stage.fluids.values()])
+        out["wetted edges"] = np.column_stack([ends[edge, 0], nodes.middle(ends[edge]), ends[edge, 1]])
+        out["wetted share [-]"] = np.array(shares)[inlet, edge]
+        out["wetted from inlet"] = inlet
     held = body.outline.vertices[body.outline.on(tuple(e for s in stage.scene.supports for e in s.edges))]
     if len(held):
         out["held edges"] = np.column_stack([held[:, 0], nodes.middle(held), held[:, 1]])

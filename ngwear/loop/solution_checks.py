@@ -130,14 +130,15 @@ def _crushed(stage: Stage) -> Iterator[Finding]:
 
 def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     """A contact that carries less than the fluid's pressure: the fluid would open it."""
-    fluid = stage.fluid
-    if fluid is None or fluid.leaks or not stroke.pressure > 0 or stage.leaking is not None:
-        return  # of a scene that asks for the leak pressure, the recorder warns
-    holds, edge = fluid.leak_pressure()
-    if holds < stroke.pressure:
-        yield Finding(
-            f"blow-by {stroke.name}",
-            stroke.pressure - holds,
-            f"stroke '{stroke.name}': the fluid's {stroke.pressure:.3g} MPa would open the contact at '{edge}', which "
-            f"carries {holds:.3g} MPa at most; the results are for a seal that does not open",
+    for fluid in stage.fluids.values():
+        if (blown := fluid.blow_by()) is None:
+            continue
+        what = f"stroke '{stroke.name}': the {blown.pressure:.3g} MPa of '{blown.inlet}'"
+        sentence = (
+            f"{what} would open the contact at '{blown.edge}', which carries {blown.holds:.3g} MPa at most; the "
+            "results are for a seal that does not open"
+            if blown.holds > 0
+            else f"{what} reaches '{blown.edge}', the last of the fluid's edges that way, and no contact stops it; if "
+            "one stops it beyond, name the edges up to there in fluid.edges"
         )
+        yield Finding(f"blow-by {stroke.name} {blown.inlet}", blown.pressure - blown.holds, sentence)

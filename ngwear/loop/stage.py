@@ -40,7 +40,8 @@ class Stage:
     contacts : dict of str to OutlineContact
     frictions : dict of str to Friction
         All contacts with friction; ``sticking`` are those with stick and slip, ``sliding`` those in full sliding.
-    fluid : FluidPressure or None
+    fluids : dict of str to FluidPressure
+        The fluid from each inlet; empty without any.
     floats : tuple of int
         Components of the displacement in which nothing holds the part (``ngwear.scene.holding``).
     memory : StrokeMemory or None
@@ -82,14 +83,8 @@ class Stage:
                 mu = self.frictions[spec.name].coefficient if spec.name in self.frictions else None
                 wear = PressureWear(spec.wear_law, modulus=modulus, coefficient=mu)
                 self.contacts[spec.name].pressure_wear = wear
-        self.fluid: FluidPressure | None = None
-        if scene.fluid is not None:
-            from ngwear.effects.fluid_pressure import FluidPressure
-
-            self.fluid = FluidPressure(scene.fluid.edges, scene.fluid.inlet, tuple(self.contacts.values()))
-        terms = [self.elasticity, *self.contacts.values(), *self.frictions.values()]
-        if self.fluid is not None:
-            terms.append(self.fluid)
+        self.fluids: dict[str, FluidPressure] = self._fluids() if scene.fluid is not None else {}
+        terms = [self.elasticity, *self.contacts.values(), *self.frictions.values(), *self.fluids.values()]
         self.floats = free_directions(scene)
         if self.floats:
             from ngwear.effects.rigid_motion import RigidMotion
@@ -123,6 +118,24 @@ class Stage:
         self.sliding[spec.name] = FullSliding(contact, law, speed=speed, stepped=scene.deactivation is not None)
         return self.sliding[spec.name]
 
+    def _fluids(self) -> dict[str, FluidPressure]:
+        """Build the fluid pressure from each inlet."""
+        from ngwear.effects.fluid_pressure import FluidPressure
+
+        spec, contacts = self.scene.fluid, tuple(self.contacts.values())
+        held = [edge for support in self.scene.supports for edge in support.edges if support.x and support.y]
+        fluids = (
+            {}
+            if spec is None
+            else {
+                name: FluidPressure(spec.edges, edges, contacts, name=name, held=held)
+                for name, edges in spec.inlets.items()
+            }
+        )
+        for fluid in fluids.values():
+            fluid.others = tuple(other for other in fluids.values() if other is not fluid)
+        return fluids
+
     def stroke_loads(self, stroke: Stroke) -> dict[str, float]:
         """Loads of a stroke: position or force of each surface, direction of sliding, fluid pressure."""
         loads: dict[str, float] = {}
@@ -133,27 +146,30 @@ class Stage:
                 friction = self.frictions[spec.name]
                 way = stroke.travel if friction.remembers else 1.0
                 loads |= dict.fromkeys(friction.loads, stroke.direction * way if spec.slides else 0.0)
-        if self.fluid is not None:
-            loads |= dict.fromkeys(self.fluid.loads, stroke.pressure)
+        for name, fluid in self.fluids.items():
+            loads |= dict.fromkeys(fluid.loads, stroke.pressure_at(name))
         return loads
 
     @property
-    def leaking(self) -> FluidPressure | None:
-        """The fluid pressure term if the scene asks for the leak pressure, else None."""
+    def leaking(self) -> list[FluidPressure]:
+        """The fluids if the scene asks for the leak pressure, else none."""
         spec = self.scene.fluid
-        return self.fluid if spec is not None and spec.leak_pressure else None
+        return list(self.fluids.values()) if spec is not None and spec.leak_pressure else []
 
     def fluid_passed(self) -> Array | None:
-        """Places up to which the fluid has lifted contacts in the present state, for ``let_fluid_pass``; None: none."""
-        if self.fluid is None:
+        """Places up to which the fluids have lifted contacts in the present state, for ``let_fluid_pass``; None: none.
+
+        Of shape (inlets, 2, 2): inlet, way, coordinates.
+        """
+        if not self.fluids:
             return None
-        places = self.fluid.passed
+        places = np.array([fluid.passed for fluid in self.fluids.values()])
         return places if np.isfinite(places).any() else None
 
     def let_fluid_pass(self, places: Array | None) -> None:
-        """Set the places up to which the fluid has lifted contacts, before a solve."""
-        if self.fluid is not None:
-            self.fluid.passed = np.full((2, 2), np.nan) if places is None else places
+        """Set the places up to which the fluids have lifted contacts, before a solve."""
+        for k, fluid in enumerate(self.fluids.values()):
+            fluid.passed = np.full((2, 2), np.nan) if places is None else places.reshape(-1, 2, 2)[k]
 
     @property
     def has_stick_slip(self) -> bool:
@@ -223,8 +239,8 @@ class Stage:
         for friction in self.frictions.values():
             if friction.remembers or self.scene.deactivation is not None or self.floats:
                 loads |= dict.fromkeys(friction.loads, 0.0)
-        if self.fluid is not None:
-            loads |= dict.fromkeys(self.fluid.loads, 0.0)
+        for fluid in self.fluids.values():
+            loads |= dict.fromkeys(fluid.loads, 0.0)
         return loads
 
     def _clearance(self, spec: Contact) -> tuple[float, int]:
@@ -303,8 +319,7 @@ class Stage:
             found[name] = contact.force()
             if name in self.frictions:
                 found[f"{name} friction"] = self.frictions[name].force()
-        if self.fluid is not None:
-            found["fluid"] = self.fluid.force()
+        found |= {name: fluid.force() for name, fluid in self.fluids.items()}
         if self.scene.axisymmetric:
             found["hoop"] = np.array([0.0, -self.problem.hoop_force()])
         return found

@@ -20,7 +20,8 @@ from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 from ngwear.wear.jump_control import JumpControl
 
-if TYPE_CHECKING:  # modules of the memory are not imported without it
+if TYPE_CHECKING:  # modules of effects that a scene does not have are not imported
+    from ngwear.effects.fluid_pressure import BlowBy
     from ngwear.fields.background_mesh import Background
     from ngwear.loop.memory_over_cycles import CycleMemory
 
@@ -271,6 +272,8 @@ class StrokeReport:
         The loaded section (``ngwear.loop.section_snapshot``) at strokes that are saved, else empty.
     findings : tuple of Finding
         What a reader must know of this solve (``ngwear.loop.solution_checks``).
+    blow_by : tuple of BlowBy
+        Fluids that no contact holds.
     """
 
     phase: int
@@ -292,3 +295,4 @@ class StrokeReport:
     loaded: dict[str, Array] = field(default_factory=dict)
     section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
+    blow_by: tuple[BlowBy, ...] = ()

@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from types import ModuleType
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,10 +25,14 @@ from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.stroke_solve import recorder, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
+from ngwear.scene.boundary import GO_ON
 from ngwear.scene.scene import Scene
 from ngwear.wear.cycle_jumps import Plan, planned
 from ngwear.wear.jump_control import JumpControl
 from ngwear.wear.sliding_distance import Strokes
+
+if TYPE_CHECKING:  # modules of effects that a scene does not have are not imported
+    from ngwear.effects.fluid_pressure import BlowBy
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -175,8 +180,15 @@ class Stepper:
             state.reports.append(self._report(state, i, iterations, sliding))
 
     def finished(self, state: State) -> bool:
-        """Whether all strokes of the program are completed."""
-        return state.strokes >= self.scene.program.strokes
+        """Whether all strokes of the program are completed, or the scene ends here (``blown``)."""
+        return state.strokes >= self.scene.program.strokes or self.blown(state) is not None
+
+    def blown(self, state: State) -> BlowBy | None:
+        """The fluid that no contact holds, in the last step of a run that ends there (``Fluid.blow_by``)."""
+        fluid = self.scene.fluid
+        if fluid is None or fluid.blow_by == GO_ON:
+            return None
+        return next((blown for report in state.reports for blown in report.blow_by), None)
 
     def advance(self, state: State) -> State:
         """Take one step: solve each stroke of the cycle once, for as many strokes as the error control allows.
@@ -257,7 +269,7 @@ class Stepper:
     def _step(self, state: State, cycles: int) -> float:
         """Solve each stroke of the cycle with its wear; return the relative error of worn area (nan: unknown).
 
-        It is infinite if an element would be torn too late within a jump.
+        It is infinite if an element would be torn, or a run that ends at blow-by would end, too late within a jump.
         """
         cycle, memory = self.scene.program.cycle, state.memory
         plan = planned(len(cycle), state.strokes, cycles, self.scene.program.strokes)
@@ -294,6 +306,8 @@ class Stepper:
                     cells=state.cells,
                 )
             )
+        if cycles > 1 and self.blown(state) is not None:
+            return math.inf  # it begins in one of these strokes: shorter steps find it
         if memory is not None:
             memory.commit(plan)
         if state.strokes < self.scene.program.strokes and is_due(state):
@@ -326,8 +340,9 @@ class Stepper:
             coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
             wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
             counters=state.counters,
-            leaks=stage.fluid is not None and stage.fluid.leaks,
-            leak_pressure=None if stage.leaking is None else stage.leaking.leak_pressure(),
+            leaks=any(fluid.leaks for fluid in stage.fluids.values()),
+            leak_pressure=min((fluid.leak_pressure() for fluid in stage.leaking), default=None),
+            blow_by=tuple(blown for fluid in stage.fluids.values() if (blown := fluid.blow_by()) is not None),
             contour=state.contour,
             ledger=state.ledger.copy(),
             cells=state.cells,

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Array = NDArray[np.float64]
+Index = NDArray[np.intp]
 
 SECTION = "section.png"
 CLIPPED = 0.99  # share of the values within the colour scale: the stress at a sharp corner is unbounded
@@ -132,9 +133,9 @@ class _Picture:
                 *panels[0].get_legend_handles_labels(), loc="upper right", bbox_to_anchor=corner, ncols=2, frameon=False
             )
             self._name_pressures(figure, layout, panels)
-        pressure = self.section.fluid_pressure
+        pressures = " and ".join(f"{p:.3g} MPa" for p in sorted(self.section.wetted, reverse=True) if p > 0)
         stroke = self.shown.kind if len({s.kind for s in self.kept.snapshots}) > 1 else ""
-        words = [stroke, f"{pressure:.3g} MPa" if pressure > 0 else "", _when(self.shown)]
+        words = [stroke, pressures, _when(self.shown)]
         title = f"{self.kept.scene}: {', '.join(filter(None, words))}"
         figure.text(left / layout.size[0], 1 - 0.12 / layout.size[1], title, va="top", fontsize=FONT + 2)
         return figure
@@ -178,8 +179,9 @@ class _Picture:
             _line(axes, curves(section.points, section.held), "k", 0.8, zorder=3.8, path_effects=[hatch])
         rubber = _region(section)
         taken = [rubber]
-        if section.fluid_pressure > 0:
-            taken.append(self._draw_fluid(axes, layout, rubber, bodies))
+        for pressure, edges in section.wetted.items():
+            if pressure > 0:
+                taken.append(self._draw_fluid(axes, layout, rubber, bodies, pressure=pressure, edges=edges))
         for name, shape in bodies.items():
             others = union_all([*taken, *(b for key, b in bodies.items() if key != name)])
             taken.append(write_in(axes, name, shape.difference(others), inch=layout.inch, fontsize=FONT))
@@ -206,24 +208,26 @@ class _Picture:
                 found[name] = body(self.kept.surfaces[name], contact, self.shown.profiles.get(name, {}), window)
         return {name: shape for name, shape in found.items() if not shape.is_empty}
 
-    def _draw_fluid(self, axes: Axes, layout: _Layout, rubber: Any, bodies: dict[str, Any]) -> Any:
-        """The fluid that presses on the section, its line and its pressure; return the space of the text."""
+    def _draw_fluid(
+        self, axes: Axes, layout: _Layout, rubber: Any, bodies: dict[str, Any], *, pressure: float, edges: Index
+    ) -> Any:
+        """A fluid that presses on edges of the section, its line and its pressure; return the space of the text."""
         from shapely import MultiLineString, box, union_all
 
         section = self.section
-        _line(axes, curves(section.points, section.wetted), WET, 2.2, zorder=4.5)
+        _line(axes, curves(section.points, edges), WET, 2.2, zorder=4.5)
         thin = 0.01 * layout.inch  # what is narrower than twice this joins no two pools
         (left, low), (right, high) = layout.window
         solid = union_all([rubber, *bodies.values()])
         free = box(left, low, right, high).difference(solid.buffer(thin))
-        wet = MultiLineString([section.points[edge].tolist() for edge in section.wetted])
+        wet = MultiLineString([section.points[edge].tolist() for edge in edges])
         pools = [p for p in getattr(free, "geoms", [free]) if p.distance(wet) < 3 * thin]
         for pool in pools:
             drawn = pool.buffer(2 * thin)
             for part in getattr(drawn, "geoms", [drawn]):
                 axes.fill(*np.array(part.exterior.coords).T, facecolor=FLUID, edgecolor="none", zorder=0.5)
         room = union_all(pools)
-        text = f"{section.fluid_pressure:.3g} MPa"
+        text = f"{pressure:.3g} MPa"
         return write_in(axes, text, room, inch=layout.inch, fontsize=FONT, colour=WET)
 
     def _layout(self, panels: int) -> _Layout:

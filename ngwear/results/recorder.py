@@ -75,7 +75,8 @@ class Recorder:
     """Rows and snapshots of a run so far, as plain data that a checkpoint stores.
 
     ``unworn`` is the outline from which depths are measured: that of the scene, or of its elements. ``findings`` holds
-    the worst of each kind and place: how much, at which stroke, and the sentence.
+    the worst of each kind and place: how much, at which stroke, and the sentence. ``blow_by`` holds the first stroke of
+    each kind in which a fluid passes all contacts, and where.
     """
 
     scene: Scene
@@ -86,6 +87,7 @@ class Recorder:
     unworn: Outline | None = None
     unworn_area: float = 0.0
     findings: dict[str, list[Any]] = field(default_factory=dict)
+    blow_by: list[dict[str, Any]] = field(default_factory=list)
 
     def to_data(self) -> dict[str, Any]:
         """The records as plain data for ``from_data``, without the scene."""
@@ -103,12 +105,30 @@ class Recorder:
             unworn = measured_at(self.scene) if state.cells is None else state.contour
             self.unworn, self.unworn_area = unworn, unworn.area
         for report in state.reports:
+            self._add_blow_by(report)
             self.rows.append(self._row(state, report, wall, unworn))
             self.snapshots.append(self._snapshot(report))
             for found in report.findings:
                 if found.amount > self.findings.get(found.key, [0.0])[0]:
                     stroke = self.scene.program.counted(report.last_stroke)
                     self.findings[found.key] = [found.amount, stroke, found.sentence]
+
+    def _add_blow_by(self, report: Any) -> None:
+        """Keep the first stroke of each kind in which a fluid passes all contacts."""
+        kind = self.scene.program.cycle[report.phase].name
+        for blown in report.blow_by:
+            known = [(found["kind"], found["inlet"]) for found in self.blow_by]
+            if (kind, blown.inlet) not in known:
+                self.blow_by.append(
+                    {
+                        "kind": kind,
+                        "stroke": self.scene.program.counted(report.last_stroke),
+                        "inlet": blown.inlet,
+                        "edge": blown.edge,
+                        "fluid pressure [MPa]": blown.pressure,
+                        "highest contact pressure [MPa]": blown.holds,
+                    }
+                )
 
     def _row(self, state: Any, report: Any, wall: float, unworn: Outline) -> dict[str, Any]:
         scene = self.scene
@@ -151,6 +171,8 @@ class Recorder:
         row |= {f"{name} margin of steady sliding [-]": margin for name, margin in report.margins.items()}
         row |= {f"{name} friction coefficient [-]": mu for name, mu in report.coefficients.items()}
         row |= {f"{name} specific wear rate [mm^2/N]": rate for name, rate in report.wear_rates.items()}
+        if scene.fluid is not None:
+            row["blow-by [-]"] = len(report.blow_by)
         if report.leak_pressure is not None:
             row[LEAK], row["leaks first at [-]"] = report.leak_pressure
         row |= {
@@ -245,10 +267,12 @@ class Recorder:
         if peaks:
             out["peak pressure [MPa]"] = max(r[c] for r in self.rows[-len(cycle) :] for c in peaks)
         if leaks:
-            under = max(scene.program.cycle, key=lambda stroke: stroke.pressure).name
+            under = max(scene.program.cycle, key=lambda stroke: stroke.highest_pressure).name
             last = [row for row in self.rows if row["kind [-]"] == under][-1]
             out |= {LEAK: last[LEAK], "leaks first at": last["leaks first at [-]"]}
         out |= self._rests()
+        if scene.fluid is not None:
+            out["blow-by"] = self.blow_by
         worst = max(ledger.worn, 1e-300)
         out["warnings"] = self._warnings()
         out |= {
@@ -290,7 +314,7 @@ class Recorder:
         return out
 
     def _warnings(self) -> list[str]:
-        """Warnings for the reader of the results: what solves show, unstable sliding, leaks."""
+        """Warnings for the reader of the results: what solves show, unstable sliding."""
         found = [f"{sentence} (stroke {stroke})" for _, stroke, sentence in self.findings.values()]
         for spec in self.scene.contacts:
             column = f"{spec.name} margin of steady sliding [-]"
@@ -299,15 +323,6 @@ class Recorder:
                 found.append(
                     f"contact '{spec.name}': friction and pressure are so high that steady sliding is unstable "
                     f"({column} {least:.2g}): waves would run along the surface; the results are for steady sliding"
-                )
-        for stroke in self.scene.program.cycle:
-            rows = [row for row in self.rows if row["kind [-]"] == stroke.name and LEAK in row]
-            least = min(rows, key=lambda row: row[LEAK], default=None)
-            if least is not None and least[LEAK] < stroke.pressure:
-                found.append(
-                    f"stroke '{stroke.name}': the seal would leak at '{least['leaks first at [-]']}', whose contact "
-                    f"holds {least[LEAK]:.3g} MPa of the fluid's {stroke.pressure:.3g} MPa at stroke "
-                    f"{least['stroke [-]']}; the results are for a seal without a leak"
                 )
         return found
 

@@ -60,10 +60,10 @@ class Section:
         ring, or the stress normal to a plane section.
     stretch : array, shape (nv,)
         Maximum principal stretch at the vertices [-].
-    wetted, held : array of int, shape (m, 3)
-        Start, midpoint and end of each mesh edge under fluid pressure, and on a support.
-    fluid_pressure : float
-        Fluid pressure [MPa].
+    wetted : dict of float to array of int, shape (m, 3)
+        Start, midpoint and end of each mesh edge under a fluid pressure, by this pressure [MPa].
+    held : array of int, shape (m, 3)
+        The same of each mesh edge on a support.
     contacts : dict of str to SectionContact
     """
 
@@ -73,9 +73,8 @@ class Section:
     quadrilaterals: Index
     stress: Array
     stretch: Array
-    wetted: Index
+    wetted: dict[float, Index]
     held: Index
-    fluid_pressure: float
     contacts: dict[str, SectionContact]
 
     @classmethod
@@ -104,9 +103,8 @@ class Section:
             quadrilaterals=whole("quadrilaterals"),
             stress=real(STRESS),
             stretch=real(STRETCH),
-            wetted=whole("wetted edges")[real("wetted share [-]") > 0.5] if wet else np.empty((0, 3), dtype=np.intp),
+            wetted=_wetted(arrays) if wet else {},
             held=whole("held edges") if "held edges" in arrays else np.empty((0, 3), dtype=np.intp),
-            fluid_pressure=float(real("fluid pressure [MPa]")) if wet else 0.0,
             contacts={
                 name: SectionContact(
                     real(f"{name}: place [mm]"),
@@ -118,6 +116,11 @@ class Section:
                 for name in names
             },
         )
+
+    @property
+    def fluid_pressure(self) -> float:
+        """Highest fluid pressure [MPa]."""
+        return max(self.wetted, default=0.0)
 
     def field(self, name: str) -> Array:
         """Values of a field at the vertices, shape (nv,), by its name in ``FIELDS``."""
@@ -157,6 +160,19 @@ class Section:
                 here = int(border[row, 2])
             loops.append(np.array(loop))
         return loops
+
+
+def _wetted(arrays: Arrays) -> dict[float, Index]:
+    """``Section.wetted``; a file written before there were several inlets names none."""
+    edges = np.asarray(arrays["wetted edges"], dtype=np.intp)
+    inlet = np.asarray(arrays.get("wetted from inlet", np.zeros(len(edges))), dtype=np.intp)
+    whole = np.asarray(arrays["wetted share [-]"], dtype=np.float64) > 0.5
+    pressures = np.atleast_1d(np.asarray(arrays["fluid pressure [MPa]"], dtype=np.float64)).tolist()
+    found: dict[float, Index] = {}
+    for k, pressure in enumerate(pressures):
+        mine = edges[whole & (inlet == k)]
+        found[pressure] = np.vstack([found[pressure], mine]) if pressure in found else mine
+    return found
 
 
 def _principal(section: Section) -> tuple[Array, Array]:

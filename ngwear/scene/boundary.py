@@ -2,33 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ngwear.errors import check_fields
+from ngwear.errors import check_fields, require
+
+FLUID = "fluid"  # name of the only inlet
+GO_ON, END = "go on", "end"
 
 
 @dataclass(frozen=True, kw_only=True)
 class Fluid:
-    """Pressure of a sealed fluid on edges of the part.
+    """Pressure of sealed fluids on edges of the part, from one inlet or several.
 
     Parameters
     ----------
     edges : sequence of str
-        Edges that the fluid may wet; they form one connected piece.
-    inlet : sequence of str
-        Edges that are always wetted; from there the fluid reaches the first point in contact.
+        Edges that a fluid may wet; they form one connected piece.
+    inlet : sequence of str, or mapping of str to sequence of str
+        Edges that are always wetted; from there the fluid reaches the first point in contact. Several inlets, such as
+        the two sides of a seal, have names, each with its edges; ``Stroke.pressure`` then gives the pressure of each.
+    blow_by : str
+        What a run does where no contact holds the fluid: "go on" (default; the results are then for a seal that does
+        not open) or "end".
     leak_pressure : bool
         Whether to compute the fluid pressure that the contacts hold. The mesh is then also refined where the fluid
         meets a contact, because the contact pressure often has its peak there.
     """
 
     edges: Sequence[str]
-    inlet: Sequence[str]
+    inlet: Sequence[str] | Mapping[str, Sequence[str]]
     leak_pressure: bool = False
+    blow_by: str = GO_ON
 
     def __post_init__(self) -> None:
         check_fields(self, "fluid")
+        require(self.blow_by in (GO_ON, END), "fluid.blow_by", self.blow_by, f"must be '{GO_ON}' or '{END}'")
+        known: set[str] = set()
+        require(bool(self.inlets), "fluid.inlet", self.inlet, "must name some of the fluid's edges")
+        for name, edges in self.inlets.items():
+            place = "fluid.inlet" if name == FLUID else f"fluid.inlet.{name}"
+            remedy = f"must name some of the fluid's edges {list(self.edges)}"
+            require(bool(edges) and set(edges) <= set(self.edges), place, list(edges), remedy)
+            remedy = "belongs to another inlet, too: an edge can hold one pressure only"
+            require(known.isdisjoint(edges), place, list(edges), remedy)
+            known.update(edges)
+
+    @property
+    def inlets(self) -> dict[str, Sequence[str]]:
+        """Edges of each inlet, by its name; the only inlet is named "fluid"."""
+        return dict(self.inlet) if isinstance(self.inlet, Mapping) else {FLUID: self.inlet}
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 from ngwear.errors import require
@@ -42,7 +43,17 @@ def refuse_in_scene(scene: Any) -> None:
     for stroke in scene.program.cycle:
         place, known = f"program.stroke '{stroke.name}'", stroke.speed is not None
         remedy = "a fluid pressure needs a [fluid] table with the edges that the fluid may wet"
-        require(stroke.pressure == 0 or scene.fluid is not None, f"{place}.pressure", stroke.pressure, remedy)
+        dry = stroke.highest_pressure == 0
+        require(dry or scene.fluid is not None, f"{place}.pressure", stroke.pressure, remedy)
+        inlets = [] if scene.fluid is None else list(scene.fluid.inlets)
+        if isinstance(stroke.pressure, Mapping):
+            for name, pressure in stroke.pressure.items():
+                remedy = f"no inlet has this name; the inlets are {inlets}"
+                require(name in inlets, f"{place}.pressure.{name}", pressure, remedy)
+        else:
+            example = ", ".join(f'"{name}" = {stroke.pressure:g}' for name in inlets)
+            remedy = f"the scene has several inlets: give the pressure of each, such as {{ {example} }}"
+            require(dry or len(inlets) == 1, f"{place}.pressure", stroke.pressure, remedy)
         remedy = "rubber with memory needs the stroke's speed in mm/s"
         require(scene.part.prony is None or known, f"{place}.speed", stroke.speed, remedy)
         for contact in scene.contacts:

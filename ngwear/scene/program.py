@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, replace
 
 from ngwear.errors import check_fields, require
@@ -28,8 +28,8 @@ class Stroke:
         Sliding distance [mm], > 0.
     direction : float
         1 forward, -1 backward, along the tangent of the surface (its normal turned clockwise).
-    pressure : float
-        Sealed pressure [MPa], >= 0.
+    pressure : float, or mapping of str to float
+        Sealed pressure [MPa], >= 0; with several inlets (``Fluid.inlet``) that of each, by name, 0 if it is left out.
     speed : float or None
         Sliding speed [mm/s], > 0; needed for rubber with memory and for friction that depends on speed.
     """
@@ -38,7 +38,7 @@ class Stroke:
     _: KW_ONLY
     travel: float
     direction: float = 1.0
-    pressure: float = 0.0
+    pressure: float | Mapping[str, float] = 0.0
     speed: float | None = None
 
     def __post_init__(self) -> None:
@@ -46,8 +46,22 @@ class Stroke:
         check_fields(self, place)
         require(self.travel > 0, f"{place}.travel", self.travel, "must be greater than 0 mm")
         require(-1 <= self.direction <= 1, f"{place}.direction", self.direction, "must lie between -1 and 1")
-        require(self.pressure >= 0, f"{place}.pressure", self.pressure, "must be at least 0 MPa")
+        for pressure in self._pressures:
+            require(pressure >= 0, f"{place}.pressure", self.pressure, "must be at least 0 MPa")
         require(self.speed is None or self.speed > 0, f"{place}.speed", self.speed, "must be greater than 0 mm/s")
+
+    @property
+    def _pressures(self) -> tuple[float, ...]:
+        return tuple(self.pressure.values()) if isinstance(self.pressure, Mapping) else (self.pressure,)
+
+    @property
+    def highest_pressure(self) -> float:
+        """Highest sealed pressure of the stroke [MPa]."""
+        return max(self._pressures, default=0.0)
+
+    def pressure_at(self, inlet: str) -> float:
+        """Sealed pressure at an inlet [MPa]."""
+        return self.pressure.get(inlet, 0.0) if isinstance(self.pressure, Mapping) else self.pressure
 
     @property
     def duration(self) -> float:

@@ -69,13 +69,7 @@ class Scene:
         users = [(f"contact '{c.name}'.edges", c.edges) for c in self.contacts]
         users += [(f"support[{i}].edges", s.edges) for i, s in enumerate(self.supports)]
         if self.fluid is not None:
-            users += [("fluid.edges", self.fluid.edges), ("fluid.inlet", self.fluid.inlet)]
-            require(
-                set(self.fluid.inlet) <= set(self.fluid.edges) and bool(self.fluid.inlet),
-                "fluid.inlet",
-                self.fluid.inlet,
-                f"must name some of the fluid's edges {list(self.fluid.edges)}",
-            )
+            users.append(("fluid.edges", self.fluid.edges))
         for place, edges in users:
             for edge in edges:
                 require(edge in known, place, edge, f"the outline has no such edge; it has {list(known)}")

@@ -77,7 +77,7 @@ def seal_turned_round(pressure_on) -> list[Finding]:
             *pressure(rod),
             Finding("forces out of balance", imbalance(stage.forces()), 1e-6),
         ]
-        found.append(Finding("leaks", float(stage.fluid.leaks), 0.0))
+        found.append(Finding("leaks", float(any(fluid.leaks for fluid in stage.fluids.values())), 0.0))
         lips.append(abs(float(rod.force()[1])))
     found.append(near("force on the rod, outward again", lips[2], lips[0], 1e-4))
     found.append(near("force on the rod, inward again", lips[3], lips[1], 1e-4))

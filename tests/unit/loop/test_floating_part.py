@@ -50,7 +50,7 @@ def test_the_fluid_moves_the_block_to_the_wall_which_carries_all_of_it():
     assert last["left wall force x [N/mm]"] == pytest.approx(-last["fluid force x [N/mm]"], rel=1e-6)
     assert last["left wall force x [N/mm]"] > 0.9 * PRESSURE * HEIGHT
     assert result.summary["out, rests along x on"] == "left wall"
-    assert result.summary["warnings"] == []
+    assert all("no contact stops it" in warning for warning in result.summary["warnings"]), "it is free above and below"
 
 
 def test_it_stays_where_it_is_if_nothing_drives_it():

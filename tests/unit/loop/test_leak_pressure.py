@@ -21,7 +21,7 @@ from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.plots.wear import history_figure
 from ngwear.results.quantities_of_interest import LEAKS, quantities
-from ngwear.results.recorder import LEAK, Recorder
+from ngwear.results.recorder import LEAK
 from ngwear.results.result_file import read_result
 from ngwear.scene.boundary import Fluid
 from ngwear.scene.program import Program, Stroke
@@ -94,15 +94,6 @@ def test_its_error_is_stated_and_drawn(block):
     top = [band.get_paths()[0].vertices[:, 1].max() for band in pressures.collections]
     leaks = [file.series[LEAK][file.series["kind [-]"] == kind].max() for kind in file.kinds]
     assert top == pytest.approx([1.02 * leak for leak in leaks])
-
-
-def test_a_seal_that_would_leak_is_warned_of(block):
-    rows = [row | {LEAK: 2.9, FIRST: "top"} if row["kind [-]"] == "3 MPa" else row for row in block[1].recorder.rows]
-    warnings = Recorder(scene(), rows=rows)._warnings()
-    assert len(warnings) == 1
-    assert (
-        "stroke '3 MPa': the seal would leak at 'top', whose contact holds 2.9 MPa of the fluid's 3 MPa" in warnings[0]
-    )
 
 
 @pytest.mark.parametrize("fluid", [None, replace(scene().fluid, leak_pressure=False)])

@@ -168,7 +168,7 @@ def test_fluid_wets_the_edges_that_it_reaches(tmp_path, seal):
     state = Stepper(scene).start()
     outward, inward = (Section.of(report.section) for report in state.reports)
     assert (outward.fluid_pressure, inward.fluid_pressure) == (0.0, 2.0)
-    x, y = inward.points[inward.wetted[:, 1]].T
+    x, y = inward.points[inward.wetted[2.0][:, 1]].T
     assert x.max() > 4.8
     assert x.min() > 3.3
     assert y.max() > 14.5
