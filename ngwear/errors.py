@@ -119,10 +119,10 @@ class MeshError(NgwearError):
 
 
 class ConvergenceError(NgwearError):
-    """No equilibrium was found; ``report`` holds the last Newton iterations."""
+    """No equilibrium was found; ``report`` holds the last Newton iterations, ``cause`` what the part itself shows."""
 
-    def __init__(self, message: str, report: Any = None) -> None:
-        self.report = report
+    def __init__(self, message: str, report: Any = None, *, cause: str = "") -> None:
+        self.report, self.cause = report, cause
         super().__init__(message if report is None else f"{message}\n{report}")
 
 

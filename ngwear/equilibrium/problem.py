@@ -222,11 +222,20 @@ class Problem:
         slopes = (slope for _, slope in responses if slope is not None)
         return sum((stress for stress, _ in responses), np.zeros(())), sum(slopes, np.zeros(()))
 
-    def least_jacobian(self) -> tuple[float, Array]:
-        """Least J of the present state at the material points [-], and the centre of its element [mm]."""
+    def jacobians(self) -> Array:
+        """Least J of the present state at the material points of each element [-], shape (ne,)."""
         xx, xy, yx, yy, hoop = np.moveaxis(self.points.strain(self.state.vec.FV().NumPy())[..., :5], -1, 0)
-        jacobian = ((1 + xx) * (1 + yy) - xy * yx) * (1 + hoop)
-        return float(jacobian.min()), self.points.centres[int(jacobian.min(axis=1).argmin())]
+        least: Array = (((1 + xx) * (1 + yy) - xy * yx) * (1 + hoop)).min(axis=1)
+        return least
+
+    def turned(self) -> float:
+        """Angle by which the section has turned in the present state, counter-clockwise [degrees].
+
+        It is the rotation in the polar decomposition of the mean deformation gradient of the plane.
+        """
+        strain, volumes = self.points.strain(self.state.vec.FV().NumPy()), self.points.volumes
+        xx, xy, yx, yy = np.tensordot(volumes, strain[..., :4], axes=2) / volumes.sum()
+        return float(np.degrees(np.arctan2(yx - xy, 2 + xx + yy)))
 
     def stress(self) -> tuple[Array, Array]:
         """Strains of the present state at the material points, and the stress of all terms conjugate to them [MPa]."""

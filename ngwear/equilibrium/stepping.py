@@ -140,7 +140,8 @@ def advance(
             if step < options.smallest:
                 problem.set_loads({name: start[name] + done * (target[name] - start[name]) for name in target})
                 way = f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}"
-                raise ConvergenceError(way + diagnosis(problem), report)
+                cause = diagnosis(problem)
+                raise ConvergenceError(way + cause, report, cause=cause)
             continue
         if update or math.isfinite(duration):
             problem.commit()

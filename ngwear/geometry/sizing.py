@@ -26,6 +26,8 @@ class SizeField:
         Growth of the edge with distance [-].
     turn, elsewhere : float
         Largest turn of the outline between two mesh nodes where the field is finest, and elsewhere [rad].
+    finest : float or None
+        Up to which edge it is finest [mm]; default the smallest of ``sizes``.
     per_radius : float
         Element edges over the outline's radius of curvature, at least [-].
     """
@@ -37,6 +39,7 @@ class SizeField:
     turn: float = 0.26  # 15 degrees
     elsewhere: float = 0.5  # as of ``loop.refinement``
     per_radius: float = 2.0  # Netgen's own
+    finest: float | None = None
 
     def __call__(self, points: Array) -> Array:
         """Element edge wanted at points of shape (n, 2); shape (n,)."""
@@ -108,7 +111,8 @@ def mesh_nodes(contour: Outline, field: SizeField) -> NDArray[np.intp]:
     turn, length = np.abs(contour.turning), contour.lengths
     fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(n)])
     start = int(np.argmax(fixed))
-    in_patch = h <= 1.01 * field.sizes.min() if len(field.sizes) else np.zeros(n, dtype=bool)
+    finest = field.sizes.min(initial=0.0 if len(field.sizes) == 0 else np.inf) if field.finest is None else field.finest
+    in_patch = h <= 1.01 * finest
     max_turn = np.where(in_patch, field.turn, field.elsewhere)
     chosen = [start]
     run_length = run_turn = 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import warnings
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
@@ -49,8 +50,10 @@ def unworn_body(scene: Scene, across: float | None = None) -> Body | ElementBody
     return Body(unworn_outline(scene), mounting_field(scene, across))
 
 
-def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
+def mount(stage: Stage, on_mount: Callable[[float], None], way: Callable[..., Work] | None = None) -> Work:
     """Move the surfaces to their places, without fluid pressure; ``on_mount`` is called with the completed fraction.
+
+    ``way(target, options, on_step=...)`` changes the loads; default ``stepping.advance``.
 
     Raises
     ------
@@ -73,13 +76,15 @@ def mount(stage: Stage, on_mount: Callable[[float], None]) -> Work:
     # A part with room to move is held between its surfaces on the way; stretched off its shaft it would tip over.
     problem.set_loads(stage.first_touch())
     try:
-        return advance(problem, loads, StepOptions(first=1 / 8), on_step=report)  # grows while it is easy
+        way = way or partial(advance, problem)
+        return way(loads, StepOptions(first=1 / 8), on_step=report)  # grows while it is easy
     except ConvergenceError as error:
         found = str(error).removesuffix(f"\n{error.report}")
         advice = (
             "" if "nothing" in found else "; lower force, interference or friction"
         )  # not if the part has no support
-        raise ConvergenceError(f"no equilibrium found under the mounting load{advice}: {found}", error.report) from None
+        message = f"no equilibrium found under the mounting load{advice}: {found}"
+        raise ConvergenceError(message, error.report, cause=error.cause) from None
 
 
 def refuse_idle_contacts(state: State) -> None:

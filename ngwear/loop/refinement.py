@@ -34,6 +34,7 @@ def required_sizes(
     phases: list[Array],
     *,
     across: float | None = None,
+    fine: Array | None = None,
     reach: float = NEAR,
     sliding: float = 0.0,
     left: float = math.inf,
@@ -41,15 +42,23 @@ def required_sizes(
     """Required element sizes for the present states, one state for each stroke of the cycle.
 
     In the contacts those of ``contact_sizes``; elsewhere the size at which the error indicator of an element is its
-    share of ``Accuracy.stress_error``.
+    share of ``Accuracy.stress_error``. ``fine``, shape (k, 3): places and sizes that solves have asked for.
     """
     contacts = contact_sizes(stage, phases, across=across, reach=reach, sliding=sliding, left=left)
     places, sizes = _stress_sizes(stage, phases)
     heard = sizes < FINER * contacts(places)
-    return replace(
+    field = replace(
         contacts,
         seeds=np.vstack([contacts.seeds, places[heard]]),
         sizes=np.concatenate([contacts.sizes, sizes[heard]]),
+    )
+    if fine is None or len(fine) == 0:
+        return field
+    return replace(
+        field,
+        seeds=np.vstack([field.seeds, fine[:, :2]]),
+        sizes=np.append(field.sizes, fine[:, 2]),
+        finest=field.sizes.min(initial=np.inf),
     )
 
 

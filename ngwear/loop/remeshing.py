@@ -73,7 +73,7 @@ def remesh(state: State, contour: Outline | None = None, scene: Scene | None = N
         old.scene = with_contact_lengths(old, phases, state.across)
     if (scene is not None or state.across is not None) and state.ledger.worn == 0:
         contour = unworn_outline(old.scene)
-    wanted = required_sizes(old, phases, across=state.across, **remaining_sliding(state))
+    wanted = required_sizes(old, phases, across=state.across, fine=state.fine, **remaining_sliding(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0

@@ -7,14 +7,16 @@ worst of each kind and place, and lists them as warnings.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.contact_profile import ContactProfile
+from ngwear.fields.element_nodes import ElementNodes
 from ngwear.loop.stage import Stage
 from ngwear.scene.program import Stroke
 
@@ -40,11 +42,14 @@ class Finding:
     amount : float
         Grows with the fault.
     sentence : str
+    places : array, shape (k, 3)
+        Where the mesh does not resolve the solve, and the element edge there [mm]; empty for other faults.
     """
 
     key: str
     amount: float
     sentence: str
+    places: Array = field(default_factory=lambda: np.empty((0, 3)), compare=False)
 
 
 def findings(
@@ -59,29 +64,32 @@ def findings(
 
 def _overlaps(stage: Stage) -> Iterator[Finding]:
     """Nodes of the whole outline that lie inside a surface, whether its contact lists their edges or not."""
-    body, line = stage.body, stage.body.outline
-    parts = stage.problem.fields[DISPLACEMENT].components
-    moved = np.column_stack([part.vec.FV().NumPy()[line.vertices[:, 0]] for part in parts])
-    place = body.contour.at(line.t[:, 0]) + moved
-    length = np.linalg.norm(np.roll(place, -1, axis=0) - place, axis=1)
+    line, nodes, u = stage.body.outline, ElementNodes(stage.body.mesh), stage.problem.fields[DISPLACEMENT]
+    values = nodes.values(ng.CF((ng.x, ng.y, u[0], u[1])))
+    values = np.stack([values[line.vertices[:, 0]], values[nodes.middle(line.vertices)]])  # start and middle of an edge
+    before, place = values[..., :2], values[..., :2] + values[..., 2:]
+    length = np.linalg.norm(np.roll(place[0], -1, axis=0) - place[0], axis=1)
     for name, contact in stage.contacts.items():
-        listed = np.isin(line.names, contact.edges)
-        listed |= np.roll(listed, 1)  # the node between two edges
+        own = np.isin(line.names, contact.edges)
+        listed = np.stack([own | np.roll(own, 1), own])  # the node between two edges belongs to both
         gap = _gap(contact, place)
         # In a contact that wears, a solve ends with the depth that it wears inside the surface.
         resting = listed if not contact.wears else np.zeros_like(listed)
         for among, advice in ((~listed, UNLISTED), (resting, COARSE)):
             depth = np.where(among, -gap - DEEP * length, 0.0)
-            worst = int(np.argmax(depth))
+            worst = np.unravel_index(np.argmax(depth), depth.shape)
             if depth[worst] > 0:
-                edge, (x, y), deep = line.names[worst], place[worst], -float(gap[worst])
+                edge, (x, y), deep = line.names[worst[1]], place[worst], -float(gap[worst])
                 where = f"edge '{edge}' lies {deep:.3g} mm inside the surface of contact '{name}' at ({x:.4g}, {y:.4g})"
-                yield Finding(f"overlap {name} {edge}", deep, f"{where}{advice}")
+                edges = np.broadcast_to(length, depth.shape)
+                coarse = (depth > 0) & (advice == COARSE)
+                places = np.column_stack([before[coarse], edges[coarse]])
+                yield Finding(f"overlap {name} {edge}", deep, f"{where}{advice}", places)
 
 
 def _gap(contact: OutlineContact, place: Array) -> Array:
-    """Distance of places from the contact's surface where it stands [mm]."""
-    x, y = place.T - np.asarray(contact.stands())[:, None]
+    """Distance of places, shape (..., 2), from the contact's surface where it stands [mm]."""
+    x, y = np.moveaxis(place - np.asarray(contact.stands()), -1, 0)
     return np.asarray(contact.surface.gap(x, y), dtype=float)
 
 
@@ -96,11 +104,15 @@ def _zigzag(name: str, profile: ContactProfile) -> Iterator[Finding]:
             amplitude = float(size[first : first + ALTERNATES - 1].min())
             if amplitude > ZIGZAG * peak:
                 x, y = profile.place[zone.nodes][first + 1]
+                nodes = zone.nodes
+                apart = np.linalg.norm(np.diff(profile.reference[nodes], axis=0), axis=1)
+                edges = np.minimum(np.append(apart, apart[-1]), np.append(apart[0], apart))
                 yield Finding(
                     f"zigzag {name}",
                     amplitude,
                     f"contact '{name}': the pressure alternates from node to node by ±{amplitude:.3g} MPa near "
                     f"({x:.4g}, {y:.4g}), with a peak of {peak:.3g} MPa: take smaller elements there",
+                    np.column_stack([profile.reference[nodes], edges]),
                 )
 
 
@@ -118,13 +130,18 @@ def _imbalance(stage: Stage, forces: Mapping[str, Array]) -> Iterator[Finding]:
 
 
 def _crushed(stage: Stage) -> Iterator[Finding]:
-    least, (x, y) = stage.problem.least_jacobian()
+    points = stage.problem.points
+    jacobian = stage.problem.jacobians()
+    worst = int(jacobian.argmin())
+    least, (x, y) = float(jacobian[worst]), points.centres[worst]
     if least < CRUSHED:
+        crushed = jacobian < CRUSHED
         yield Finding(
             "crushed",
             1 - least,
             f"an element at ({x:.4g}, {y:.4g}) is squeezed to {least:.2g} of its volume: the mesh does not resolve the "
             "section there; take smaller elements",
+            np.column_stack([points.centres[crushed], points.edges[crushed]]),
         )
 
 

@@ -162,7 +162,8 @@ class State:
 
     ``depths``, shape (2, n), are worn depth and sum of the signed error estimates at the points of the outline [mm].
     ``fatigue`` is the accumulated damage of each element, and ``strained`` that of the present cycle so far [-]; both
-    are empty unless damage accumulates over cycles.
+    are empty unless damage accumulates over cycles. ``fine``, shape (k, 3), are places and the element edges that
+    solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
     """
 
     stage: Stage
@@ -178,6 +179,9 @@ class State:
     fatigue: Array = field(default_factory=lambda: np.empty(0))
     strained: Array = field(default_factory=lambda: np.empty(0))
     across: float | None = None
+    fine: Array = field(default_factory=lambda: np.empty((0, 3)))
+    halved: int = 0
+    refined: int = 0
 
     @property
     def background(self) -> Background | None:
@@ -211,6 +215,9 @@ class State:
             "ledger": self.ledger.copy(),
             "counters": self.counters,
             "depths": self.depths,
+            "fine": self.fine,
+            "halved": self.halved,
+            "refined": self.refined,
         }
 
     def restore(self, saved: dict[str, Any]) -> None:
@@ -274,6 +281,8 @@ class StrokeReport:
         What a reader must know of this solve (``ngwear.loop.solution_checks``).
     blow_by : tuple of BlowBy
         Fluids that no contact holds.
+    turned : float
+        Angle by which a part with room to move has turned [degrees].
     """
 
     phase: int
@@ -296,3 +305,4 @@ class StrokeReport:
     section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     blow_by: tuple[BlowBy, ...] = ()
+    turned: float = 0.0

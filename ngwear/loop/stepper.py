@@ -6,15 +6,24 @@ import logging
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from types import ModuleType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.stepping import StepOptions, advance
+from ngwear.equilibrium.stepping import StepOptions
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
 from ngwear.loop.element_sizes import coarse_for_mounting, with_contact_lengths, with_mounting_lengths, with_patch
+from ngwear.loop.finer_mesh import (
+    advance_on_finer,
+    keep_as_it_is,
+    may_be_finer,
+    refine_at,
+    refine_everywhere,
+    unresolved,
+)
 from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.loop.refinement import is_too_coarse
@@ -115,20 +124,24 @@ class Stepper:
 
     def _first_cycle(self, state: State, on_mount: Callable[[float], None]) -> None:
         """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
-        stage, cycle = state.stage, self.scene.program.cycle
-        problem = stage.problem
+        cycle, begin = self.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
         state.phases = []
-        state.work.add(mount(stage, on_mount))
+        state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
         if self._lost_elements is not None:
             self._lost_elements.begin(state)
         for i, stroke in enumerate(cycle):
-            stage.begin(problem.state.vec.FV().NumPy())
+            stage, halved = state.stage, state.halved
+            begin = stage.problem.state.vec.FV().NumPy().copy()
+            stage.begin(begin)
             path: list[tuple[float, Array]] = []
-            on_step = recorder(problem, path)
-            work = advance(problem, stage.stroke_loads(stroke), StepOptions(first=0.5), on_step=on_step)
+            on_step = recorder(stage.problem, path)
+            loads = stage.stroke_loads(stroke)
+            work = advance_on_finer(state, loads, StepOptions(first=0.5), begin=begin, on_step=on_step)
+            stage = state.stage
             state.work.add(work)
             needed = i > 0 and work.retries > 0 and stage.has_stick_slip and self.scene.deactivation is None
-            vector = problem.state.vec.FV().NumPy().copy()
+            needed &= state.halved == halved  # the way on another mesh is of no use
+            vector = stage.problem.state.vec.FV().NumPy().copy()
             state.phases.append(Phase(vector, path=path if needed else [], passed=stage.fluid_passed()))
             on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
 
@@ -153,7 +166,10 @@ class Stepper:
             state.stage.scene = scene
             if enough and not is_too_coarse(state.stage, vectors, **ahead):
                 state.stage.scene = before
-                break
+                if not self._resolves(state):
+                    break
+                levels += 1
+                continue
             remesh(state, scene=scene if floats else None)
             try:
                 self._settle_cycle(state)
@@ -166,6 +182,21 @@ class Stepper:
                 self._settle_cycle(state)
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
+
+    def _resolves(self, state: State) -> bool:
+        """Settle the cycle on finer elements where the last solves ask for them; False if none do, or it fails."""
+        if not (found := unresolved(state)):
+            return False
+        coarse = state.saved()
+        try:
+            refine_at(state, found)
+            self._settle_cycle(state)
+        except (ConvergenceError, MeshError) as error:
+            log.info("%s: back to the coarser elements", error)
+            state.restore(coarse)
+            keep_as_it_is(state)
+            return False
+        return True
 
     def _settle_cycle(self, state: State) -> None:
         """Solve each stroke of the cycle once on the present outline, without wear."""
@@ -201,6 +232,7 @@ class Stepper:
             If a step of one cycle fails; the state is then the last accepted one.
         """
         program, most = self.scene.program, self.scene.program.strokes
+        coarser: dict[str, Any] | None = None  # the state before its elements were refined for this step
         while True:
             goal = min([m for m in self.scene.marks if m > state.strokes] + [program.strokes])
             left = math.ceil((min(goal, program.strokes) - state.strokes) / len(program.cycle))
@@ -213,12 +245,27 @@ class Stepper:
             except (ConvergenceError, GeometryError, MeshError) as error:
                 if cycles == 1:
                     state.restore(saved)
-                    raise
+                    explained = isinstance(error, ConvergenceError) and bool(error.cause)
+                    if coarser is None and (explained or not may_be_finer(state)):
+                        raise
+                    log.info("step of one cycle failed (%s); tried on other elements", error)
+                    if coarser is None:
+                        refine_everywhere(state)
+                    else:
+                        state.restore(coarser)
+                        keep_as_it_is(state)
+                        coarser = None
+                    continue
                 log.info("step of %d cycles failed (%s); half as many are tried", cycles, error)
                 ratio = math.inf
             if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
                 state.restore(saved)
                 most = state.control.cut(cycles)
+                continue
+            if found := unresolved(state):
+                state.restore(saved)
+                coarser = state.saved()
+                refine_at(state, found)
                 continue
             share = (state.strokes - saved["strokes"]) / program.strokes
             off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)
@@ -348,5 +395,6 @@ class Stepper:
             cells=state.cells,
             loaded={} if self._lost_elements is None else self._lost_elements.loaded(stage),
             section=section_snapshot(stage) if kept else {},
+            turned=stage.problem.turned() if stage.floats else 0.0,
             findings=findings(stage, profiles, forces, self.scene.program.cycle[index]),
         )

@@ -128,7 +128,9 @@ def _by_steps(
         return _approach(state, index, stroke, work, options), False
     except ConvergenceError as error:
         raise ConvergenceError(
-            f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}", error.report
+            f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}",
+            error.report,
+            cause=error.cause,
         ) from None
 
 

@@ -166,6 +166,8 @@ class Recorder:
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
         for axis in free_directions(scene):
             row[f"rests along {'xy'[axis]} on [-]"] = _rests_on(scene, report.forces, axis)
+        if free_directions(scene):
+            row["section turned by [deg]"] = report.turned
         for name, heat in report.heats.items():
             row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
         row |= {f"{name} margin of steady sliding [-]": margin for name, margin in report.margins.items()}

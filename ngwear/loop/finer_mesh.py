@@ -1,0 +1,146 @@
+"""A finer mesh where the present one does not bear a load step, or does not resolve a solve.
+
+Only for parts with room to move, which are mounted on coarse elements; others are refined before their first stroke.
+"""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.newton import Report
+from ngwear.equilibrium.problem import Loads
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
+from ngwear.errors import ConvergenceError
+from ngwear.loop.remeshing import remesh
+from ngwear.loop.solution_checks import Finding
+from ngwear.loop.state import Phase, State
+from ngwear.scene.accuracy import PRESETS
+
+Array = NDArray[np.float64]
+log = logging.getLogger(__name__)
+
+FINER = 0.5  # times the present element edges
+EVERYWHERE, LOCALLY = 2, 3  # how often in a run: sixteen times as many elements; an eighth of the edge at a place
+
+
+def may_be_finer(state: State) -> bool:
+    """Whether a run may still halve all elements."""
+    return _remeshes(state) and state.halved < EVERYWHERE
+
+
+def _remeshes(state: State) -> bool:
+    scene = state.stage.scene
+    return bool(state.stage.floats) and scene.wear.remesh == "due" and scene.deactivation is None
+
+
+def refine_everywhere(state: State) -> None:
+    """Halve the edges of all elements, and transfer the state.
+
+    Raises
+    ------
+    MeshError
+        If the mesh fails a check; the state is then unchanged.
+    """
+    points = state.stage.problem.points
+    points.follow()
+    fine, state.fine = state.fine, np.column_stack([points.centres, FINER * points.edges])
+    try:
+        remesh(state)
+    except Exception:
+        state.fine = fine
+        raise
+    state.halved += 1
+
+
+def unresolved(state: State) -> list[Finding]:
+    """What the mesh does not resolve in the last solves, if a run may still refine there."""
+    on_purpose = state.across is not None and state.across < PRESETS["draft"]  # a run that others are compared with
+    if on_purpose or not _remeshes(state) or state.refined >= LOCALLY:
+        return []
+    return [found for report in state.reports for found in report.findings if len(found.places)]
+
+
+def refine_at(state: State, found: Sequence[Finding]) -> None:
+    """Halve the element edges where findings ask for it, and transfer the state.
+
+    Raises
+    ------
+    MeshError
+        If the mesh fails a check; the state is then unchanged.
+    """
+    fine = state.fine
+    state.fine = np.vstack([fine, *(finding.places * (1.0, 1.0, FINER) for finding in found)])
+    try:
+        remesh(state)
+    except Exception:
+        state.fine = fine
+        raise
+    state.refined += 1
+
+
+def keep_as_it_is(state: State) -> None:
+    """Refine no more at findings: finer elements did not help, and the findings stay warnings."""
+    state.refined = LOCALLY
+
+
+def advance_on_finer(
+    state: State,
+    target: Loads,
+    options: StepOptions,
+    *,
+    begin: Array,
+    on_step: Callable[[float, Report], None] | None = None,
+) -> Work:
+    """As ``advance``; a load step that fails goes on from the state before it, on elements of half the edges.
+
+    Not where the part itself shows the cause, such as a surface that creases: finer elements do not change that.
+
+    Parameters
+    ----------
+    begin : array
+        State at the beginning of the stroke, from which slip is measured.
+
+    Raises
+    ------
+    ConvergenceError
+        If a load step fails on the finest elements, too.
+    MeshError
+        If a finer mesh fails a check.
+    """
+    work = Work()
+    while True:
+        try:
+            work.add(advance(state.stage.problem, target, options, on_step=on_step))
+        except ConvergenceError as error:
+            if error.cause or not may_be_finer(state):
+                raise
+            log.info("%s: on finer elements", error)
+            work.retries += 1
+            begin = _carry_on(state, begin, work)
+            continue
+        return work
+
+
+def _carry_on(state: State, begin: Array, work: Work) -> Array:
+    """Take the present state and that at the beginning of the stroke, which is returned, to finer elements."""
+    before, phases = state.stage, state.phases
+    loads, passed = before.problem.get_loads(), before.fluid_passed()
+    state.phases = [*phases, Phase(begin), Phase(before.problem.state.vec.FV().NumPy().copy())]
+    try:
+        refine_everywhere(state)
+        *phases, begun, now = state.phases
+    finally:
+        state.phases = phases
+    stage = state.stage
+    stage.begin(begun.vector)
+    stage.problem.set_loads(loads)
+    stage.let_fluid_pass(passed)
+    stage.problem.state.vec.FV().NumPy()[:] = now.vector
+    for term in stage.problem.terms:
+        term.refresh()
+    work.add(relax(stage.problem, StepOptions(first=0.25)))
+    return begun.vector

@@ -1,0 +1,149 @@
+"""A mesh that does not bear a load step, or does not resolve a solve, is refined; the results stay the scene's."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ngwear as nw
+from ngwear.equilibrium import stepping
+from ngwear.errors import ConvergenceError
+from ngwear.loop import finer_mesh, stepper
+from ngwear.loop.finer_mesh import EVERYWHERE, LOCALLY, refine_at, unresolved
+from ngwear.loop.solution_checks import Finding
+from ngwear.loop.stepper import Stepper
+
+
+@pytest.fixture(scope="module")
+def ring():
+    scene = nw.read_scene("geometries/o_ring/scene.toml")
+    return replace(scene, accuracy=nw.Accuracy.draft(), program=replace(scene.program, strokes=2))
+
+
+@pytest.fixture(scope="module")
+def whole(ring):
+    return Stepper(ring).start()
+
+
+def push(state):
+    return float(state.reports[-1].forces["air wall"][0])
+
+
+def fails_once(where):
+    """``advance`` that gives up once on the way to some loads, after a part of it."""
+    left = [1]
+
+    def way(problem, target, *args, **kwargs):
+        if left and where(target):
+            left.pop()
+            begin = problem.get_loads()
+            half = {name: 0.5 * (begin[name] + load) for name, load in target.items()}
+            stepping.advance(problem, half, *args, **kwargs)
+            raise ConvergenceError("stopped half-way")
+        return stepping.advance(problem, target, *args, **kwargs)
+
+    return way
+
+
+@pytest.mark.parametrize(
+    "where",
+    [
+        pytest.param(lambda target: "imbalance" not in target and target["fluid pressure [MPa]"] > 0, id="stroke"),
+        pytest.param(lambda target: target.get("rod approach [mm]", 1.0) == 0.0, id="mounting"),
+    ],
+)
+def test_a_load_step_goes_on_on_finer_elements(ring, whole, monkeypatch, where):
+    monkeypatch.setattr(finer_mesh, "advance", fails_once(where))
+    state = Stepper(ring).start()
+    assert state.halved == 1
+    assert state.stage.body.mesh.ne > 1.5 * whole.stage.body.mesh.ne
+    assert push(state) == pytest.approx(push(whole), rel=0.02)
+
+
+def test_not_where_the_part_shows_the_cause(ring, monkeypatch):
+    def way(problem, target, *args, **kwargs):
+        raise ConvergenceError("stopped", cause="the surface creases")
+
+    monkeypatch.setattr(finer_mesh, "advance", way)
+    with pytest.raises(ConvergenceError, match="stopped"):
+        Stepper(ring).start()
+
+
+def test_it_gives_up_on_the_finest_elements(ring, monkeypatch):
+    halved = []
+
+    def way(problem, target, *args, **kwargs):
+        if target.get("fluid pressure [MPa]", 0.0) > 0:
+            halved.append(problem.body.mesh.ne)
+            raise ConvergenceError("stopped")
+        return stepping.advance(problem, target, *args, **kwargs)
+
+    monkeypatch.setattr(finer_mesh, "advance", way)
+    with pytest.raises(ConvergenceError, match="stopped"):
+        Stepper(ring).start()
+    assert len(halved) == EVERYWHERE + 1
+    assert np.all(np.diff(halved) > 0)
+
+
+def asks(state, places):
+    """The state, as if its last solve had not resolved these places."""
+    found = Finding("coarse", 1.0, "too coarse", np.array(places))
+    state.reports = [replace(state.reports[-1], findings=(found,))]
+    return state
+
+
+def test_a_finding_asks_for_finer_elements_at_its_places(ring):
+    state = Stepper(ring).start()
+    x, y = state.stage.body.contour.points[0]
+    edge = float(state.stage.body.field(np.array([[x, y]]))[0])
+    before = state.stage.body.mesh.ne
+    refine_at(asks(state, [[x, y, edge]]), unresolved(state))
+    assert state.stage.body.field(np.array([[x, y]]))[0] <= 0.5 * edge * (1 + 1e-9)
+    assert state.stage.body.mesh.ne > before
+    state.refined = LOCALLY
+    assert unresolved(asks(state, [[x, y, edge]])) == []
+
+
+def test_a_run_that_does_not_bear_them_goes_on_without(ring, whole, monkeypatch):
+    """The first look finds something; the finer mesh then has no solution."""
+    place = [*whole.stage.body.contour.points[0], 0.2]
+    looks = []
+
+    def look(state):
+        looks.append(state.strokes)
+        return [Finding("coarse", 1.0, "too coarse", np.array([place]))] if len(looks) == 1 else unresolved(state)
+
+    def refine(state, found):
+        refine_at(state, found)
+        monkeypatch.setattr(stepper.Stepper, "_step", fails)
+
+    step = stepper.Stepper._step
+
+    def fails(self, state, cycles):
+        monkeypatch.setattr(stepper.Stepper, "_step", step)
+        raise ConvergenceError("no solution")
+
+    run = Stepper(ring)
+    state = run.start()
+    elements = state.stage.body.mesh.ne
+    monkeypatch.setattr(stepper, "unresolved", look)
+    monkeypatch.setattr(stepper, "refine_at", refine)
+    state = run.advance(state)
+    assert state.strokes == 2
+    assert state.refined == LOCALLY
+    assert state.stage.body.mesh.ne == elements
+
+
+@pytest.mark.slow
+def test_a_ring_that_friction_rolls_over_is_told_of(ring):
+    """Rod friction alone turns it: the groove and the walls have none."""
+    slippery = [replace(c, friction=0.4 if c.name == "rod" else 0.0) for c in ring.contacts]
+    with pytest.raises(ConvergenceError, match=r"the section has turned by -?\d+°: friction rolls the part over"):
+        Stepper(replace(ring, contacts=slippery)).start()
+
+
+def test_the_series_says_how_far_it_has_turned(ring, whole):
+    result = nw.run(ring, alone=True, progress=False)
+    turned = [row["section turned by [deg]"] for row in result.records.rows]
+    assert turned[0] == pytest.approx(whole.reports[0].turned, abs=1e-6)
+    assert max(map(abs, turned)) < 45
