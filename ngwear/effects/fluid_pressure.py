@@ -16,6 +16,7 @@ from ngwear.geometry.meshed_section import MeshedSection
 CENTRE = 2 / 5  # of the way in contact: how far from its inner end a square root of the way has its centre
 # Half of a thousandth, the least error that a run may state; settled on the rod seal (``verify rod_seal``).
 STAYS = 5e-4  # of what the contacts carry: a change of the fluid's load with which the front stands
+SWINGS, LEAST = 2, 0.1  # updates with whole steps; least share of the way between two values, later
 # Of the fluid's pressure: how much less a contact may carry and still hold it. A worn lip carries hardly more than the
 # fluid, and a few elements across it err by some per cent. Settled on a U-cup (geometries/u_cup, reference).
 LESS = 0.05
@@ -31,12 +32,15 @@ class BlowBy:
         Where it comes from, and the edge whose contact would hold it longest; without a contact the last edge.
     pressure, holds : float
         Pressure of the fluid, and the highest contact pressure on its way [MPa]; 0 without a contact.
+    meets : str
+        Name of the inlet that the way leads to; empty if to none.
     """
 
     inlet: str
     edge: str
     pressure: float
     holds: float
+    meets: str
 
 
 class FluidPressure(Term):
@@ -49,7 +53,8 @@ class FluidPressure(Term):
     fluid passes it, and stays behind it until its pressure is zero, also if the contact closes again. A fluid that no
     contact holds ends at the highest contact pressure.
 
-    chi is fixed in a solve and updated after it, until the change of load is below ``STAYS``. If the fluid reaches the
+    chi is fixed in a solve and updated after it, until the change of load is below ``STAYS``; a front that swings
+    between two edges comes to rest between them. If the fluid reaches the
     end of the named edges without a contact, ``leaks`` is True: the seal leaks. Where it meets the fluid from another
     inlet without a contact between them, the higher pressure acts on all edges between the two.
 
@@ -96,7 +101,8 @@ class FluidPressure(Term):
             raise SceneError("fluid.inlet", list(self.inlet), f"must name some of the fluid's edges {list(self.edges)}")
         self.pressure = ng.Parameter(0.0)
         self.loads = {f"{name} pressure [MPa]": self.pressure}
-        self.leaks, self._solved = False, False
+        self.leaks, self._solved, self._moves = False, False, 0
+        self._before, self._change = np.empty(0), np.empty(0)
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         body = unknowns.section
@@ -160,10 +166,26 @@ class FluidPressure(Term):
         field = self.wetted.vec.FV().NumPy()
         pressure = abs(self.pressure.Get())
         moved = pressure * float(self._lengths @ np.abs(field[self._unknown] - share)) > STAYS * carried
+        if self._solved:
+            self._moves = self._moves + 1 if moved else 0
         if moved or not self._solved:
+            now = field[self._unknown]
+            change = share - now
+            if self._moves > SWINGS:
+                share = now + self._between(now, change)
+            self._before, self._change = now, change
             field[self._unknown] = share
         self._solved = False
         return moved
+
+    def _between(self, now: np.ndarray, change: np.ndarray) -> np.ndarray:
+        """The change of chi, where the front swings one that ends between the last two values.
+
+        The changes at these two are interpolated to zero, so that the front comes to rest there.
+        """
+        swings = change * self._change < 0
+        part = np.divide(change, change - self._change, out=np.zeros_like(change), where=swings)
+        return np.where(swings, np.clip(part, LEAST, 1 - LEAST) * (self._before - now), change)
 
     def _yields(self, other: FluidPressure | None) -> bool:
         """Whether the fluid from another inlet, which this one meets, has the higher pressure."""
@@ -219,7 +241,7 @@ class FluidPressure(Term):
     @passed.setter
     def passed(self, places: np.ndarray) -> None:
         # A stroke begins: nothing of the last one but these places counts, so that a resumed run goes the same way.
-        self._reached, self._drained = [0, 0], [False, False]
+        self._reached, self._drained, self._moves = [0, 0], [False, False], 0
         for k, (_, path) in enumerate(self._paths):
             known = bool(np.isfinite(places[k]).all())
             apart = np.linalg.norm(self._middles[path] - places[k], axis=1) if known else np.zeros(1)
@@ -283,9 +305,10 @@ class FluidPressure(Term):
             pressure = profile.pressure[profile.edges].max(axis=1)
             highest[contact.positions] = np.maximum(highest[contact.positions], pressure)
         found = []
-        for _, path in self._paths:
-            at = path[highest[path].argmax()] if highest[path].any() else path[-1]
-            found.append(BlowBy(self.name, str(names[at]), self.pressure.Get(), float(highest[at])))
+        for (_, path), beyond in zip(self._paths, self._beyond, strict=True):
+            at, other = path[highest[path].argmax()] if highest[path].any() else path[-1], self._at(beyond)
+            meets = "" if other is None else other.name
+            found.append(BlowBy(self.name, str(names[at]), self.pressure.Get(), float(highest[at]), meets))
         return found
 
     def force(self) -> np.ndarray:

@@ -36,7 +36,7 @@ class StepOptions:
     first: float = 1.0
     smallest: float = 1 / 512  # nine halvings; a way that needs more ends in a report
     easy: int = 8  # a third of the most iterations
-    max_updates: int = 8  # a front that swings between two edges is left then
+    max_updates: int = 12  # a front that still moves is left then, within an edge of its place
     newton: NewtonOptions = field(default_factory=NewtonOptions)
 
 
@@ -79,7 +79,8 @@ def settle(
             except ConvergenceError:
                 return report
             return replace(report, outcome=Outcome.CONVERGED)
-        if not update or not any([term.refresh() for term in problem.terms]):
+        last = updates == options.max_updates - 1  # what the terms have fixed stays as it was solved: an equilibrium
+        if not update or last or not any([term.refresh() for term in problem.terms]):
             return report
     return report
 

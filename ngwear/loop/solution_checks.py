@@ -151,11 +151,12 @@ def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
         if (blown := fluid.blow_by()) is None:
             continue
         what = f"stroke '{stroke.name}': the {blown.pressure:.3g} MPa of '{blown.inlet}'"
-        sentence = (
-            f"{what} would open the contact at '{blown.edge}', which carries {blown.holds:.3g} MPa at most; the "
-            "results are for a seal that does not open"
-            if blown.holds > 0
-            else f"{what} reaches '{blown.edge}', the last of the fluid's edges that way, and no contact stops it; if "
-            "one stops it beyond, name the edges up to there in fluid.edges"
-        )
-        yield Finding(f"blow-by {stroke.name} {blown.inlet}", blown.pressure - blown.holds, sentence)
+        if blown.holds > 0:
+            sentence = f"would open the contact at '{blown.edge}', which carries {blown.holds:.3g} MPa at most"
+            sentence += "; the results are for a seal that does not open"
+        elif blown.meets:
+            sentence = f"meets the fluid of inlet '{blown.meets}', which has less; no contact is between them"
+        else:
+            sentence = f"reaches '{blown.edge}', the last of the fluid's edges that way, and no contact stops it; if "
+            sentence += "one stops it beyond, name the edges up to there in fluid.edges"
+        yield Finding(f"blow-by {stroke.name} {blown.inlet}", blown.pressure - blown.holds, f"{what} {sentence}")

@@ -19,6 +19,7 @@ from ngwear.scene.holding import free_directions
 from ngwear.scene.options import Save, Wear
 from ngwear.scene.part import Part
 from ngwear.scene.program import Program
+from ngwear.scene.room import refuse_fluids, refuse_without_room
 
 
 @dataclass(frozen=True)
@@ -86,6 +87,9 @@ class Scene:
         refuse_in_scene(self)
         for contact in self.contacts:
             self._check_side(contact)
+        refuse_without_room(self)
+        if self.fluid is not None:
+            refuse_fluids(self)
         if free_directions(self):  # it may roll onto any edge
             object.__setattr__(self, "contacts", tuple(replace(c, edges=known) for c in self.contacts))
 
