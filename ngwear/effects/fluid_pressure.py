@@ -46,24 +46,24 @@ class BlowBy:
 class FluidPressure(Term):
     """Follower traction ``-chi p n`` on the wetted part of named edges: the fluid from one inlet.
 
-    chi is 1 from the inlet edges, in both directions along the outline, up to the first mesh edge in contact, and 0
-    beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``). Treating such an
-    edge as dry would move the front by half an edge on average; with coarse edges the load would change by some per
-    cent. A contact that carries less than the fluid's pressure (by more than ``LESS``) is lifted off its surface: the
-    fluid passes it, and stays behind it until its pressure is zero, also if the contact closes again. A fluid that no
-    contact holds ends at the highest contact pressure.
+    chi is 1 from the middle of the inlet edges, in both directions along the outline, up to the first mesh edge in
+    contact, and 0 beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``).
+    Treating such an edge as dry would move the front by half an edge on average; with coarse edges the load would
+    change by some per cent. A contact that carries less than the fluid's pressure (by more than ``LESS``) is lifted off
+    its surface: the fluid passes it, and stays behind it until its pressure is zero, also if the contact closes again.
+    A fluid that no contact holds ends at the highest contact pressure.
 
     chi is fixed in a solve and updated after it, until the change of load is below ``STAYS``; a front that swings
-    between two edges comes to rest between them. If the fluid reaches the
-    end of the named edges without a contact, ``leaks`` is True: the seal leaks. Where it meets the fluid from another
-    inlet without a contact between them, the higher pressure acts on all edges between the two.
+    between two edges comes to rest between them. If the fluid reaches the end of the named edges without a contact,
+    ``leaks`` is True: the seal leaks. Where it meets the fluid from another inlet without a contact between them, the
+    higher pressure acts on all edges between the two.
 
     Parameters
     ----------
     edges : sequence of str
         Edges that the fluid may reach; they must be one piece of the outline with the inlet among them.
     inlet : sequence of str
-        Edges that are always wetted.
+        Edges where the fluid comes in.
     contacts : sequence of OutlineContact
         Contacts that can stop the fluid.
     name : str
@@ -119,7 +119,7 @@ class FluidPressure(Term):
         self.refresh()
 
     def _order_path(self, body: MeshedSection) -> None:
-        """Order the mesh edges that the fluid may reach outwards from the inlet's last one, once in each direction."""
+        """Order the mesh edges that the fluid may reach outwards from the inlet's middle, once in each direction."""
         line = body.outline
         reach = np.isin(line.names, self.edges)
         self._inlet = inlet = np.isin(line.names, self.inlet)
@@ -129,8 +129,14 @@ class FluidPressure(Term):
         self._passed, self._reached = [0, 0], [0, 0]  # edges of each way
         self._drained = [False, False]
         self._paths, self._beyond = [], []
+        whole = bool(inlet.all())
+        piece = [0 if whole else int(np.flatnonzero(inlet & ~np.roll(inlet, 1))[0])]
+        while inlet[(piece[-1] + 1) % m] and len(piece) < m:
+            piece.append((piece[-1] + 1) % m)
+        ways = np.cumsum(self._lengths[piece])
+        middle = piece[int(np.searchsorted(ways, 0.5 * ways[-1]))]
         for step in (1, -1):
-            path = [int(np.flatnonzero(inlet & ~np.roll(inlet, -step))[0])]
+            path = [middle]
             while reach[(path[-1] + step) % m] and len(path) <= m and not self._at(line.names[(path[-1] + step) % m]):
                 path.append((path[-1] + step) % m)
             self._paths.append((step, np.array(path)))
@@ -146,17 +152,20 @@ class FluidPressure(Term):
         Otherwise the front stays where it was, so that the state remains an equilibrium.
         """
         touching, outside, carried = self._contact()
+        stops = self._stops()
         share = np.where(self._inlet, 1.0, 0.0)
         self.leaks = False
         if self.pressure.Get() == 0.0:
             self._passed, self._drained = [0, 0], [False, False]
         elif self._solved:
-            self._pass(touching)
+            self._pass(touching, stops)
         for k, (step, path) in enumerate(self._paths):
-            stop = np.flatnonzero(touching[path])
+            stop = np.flatnonzero(stops[k])
             self.leaks |= len(stop) == 0
             stop = stop[stop >= self._passed[k]]
             reached = int(stop[0]) if len(stop) else len(path)
+            dry = np.cumprod(self._inlet[path]).sum()  # edges of the inlet's half
+            share[path[reached:dry]] = 0.0
             share[path[:reached]] = 1.0
             if not len(stop) and self._yields(self._at(self._beyond[k])):
                 share[path] = np.where(self._inlet[path], 1.0, 0.0)
@@ -178,6 +187,26 @@ class FluidPressure(Term):
         self._solved = False
         return moved
 
+    def _stops(self) -> list[np.ndarray]:
+        """Mesh edges of each way whose contact can stop the fluid.
+
+        A surface that touches the inlet's edges and no others of the way, such as a wall beside which the fluid comes
+        in, stops it only if no other one does.
+        """
+        found = []
+        for _, path in self._paths:
+            inside, touching = self._inlet[path], np.zeros(len(path), dtype=bool)
+            beyond = touching.copy()
+            for contact in self.contacts:
+                mine = np.zeros(len(self._inlet), dtype=bool)
+                mine[contact.positions[contact.touching()]] = True
+                mine = mine[path]
+                touching |= mine
+                if (mine & ~inside).any():
+                    beyond |= mine
+            found.append(beyond if beyond.any() else touching)
+        return found
+
     def _between(self, now: np.ndarray, change: np.ndarray) -> np.ndarray:
         """The change of chi, where the front swings one that ends between the last two values.
 
@@ -194,7 +223,7 @@ class FluidPressure(Term):
     def prepare(self) -> None:
         self._solved = True
 
-    def _pass(self, touching: np.ndarray) -> None:
+    def _pass(self, touching: np.ndarray, stops: list[np.ndarray]) -> None:
         """Let the fluid into contacts that it lifts: the next edges of ``_passed`` are those that hold it.
 
         A contact that closes in front of a gap that the fluid fills may drain it once, as while a load step settles;
@@ -211,7 +240,7 @@ class FluidPressure(Term):
             pressure = profile.pressure[profile.edges].max(axis=1)
             bears[contact.positions] = np.maximum(bears[contact.positions], pressure)
         for k, (_, path) in enumerate(self._paths):
-            stop = np.flatnonzero(touching[path])
+            stop = np.flatnonzero(stops[k])
             stop = stop[stop >= self._passed[k]]
             if len(stop) == 0:
                 continue
@@ -264,8 +293,7 @@ class FluidPressure(Term):
 
     def fronts(self) -> np.ndarray:
         """Outline parameters at which the fluid meets a contact in the present state; none on a path without one."""
-        touching, _, _ = self._contact()
-        first = [(step, path[touching[path]][:1]) for step, path in self._paths]
+        first = [(step, path[stop][:1]) for (step, path), stop in zip(self._paths, self._stops(), strict=True)]
         return np.concatenate([self._body.outline.t[edge, 0 if step == 1 else 1] for step, edge in first])
 
     @property
@@ -305,8 +333,9 @@ class FluidPressure(Term):
             pressure = profile.pressure[profile.edges].max(axis=1)
             highest[contact.positions] = np.maximum(highest[contact.positions], pressure)
         found = []
-        for (_, path), beyond in zip(self._paths, self._beyond, strict=True):
-            at, other = path[highest[path].argmax()] if highest[path].any() else path[-1], self._at(beyond)
+        for (_, path), beyond, stop in zip(self._paths, self._beyond, self._stops(), strict=True):
+            held = np.where(stop, highest[path], 0.0)
+            at, other = path[held.argmax() if held.any() else -1], self._at(beyond)
             meets = "" if other is None else other.name
             found.append(BlowBy(self.name, str(names[at]), self.pressure.Get(), float(highest[at]), meets))
         return found

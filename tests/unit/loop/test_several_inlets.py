@@ -57,6 +57,17 @@ def test_the_higher_pressure_moves_the_ring(reports):
         assert abs(sum(along)) < 1e-6 * np.abs(along).max()
 
 
+def test_a_contact_that_reaches_into_the_inlet_stops_the_fluid_there():
+    """An X-ring whose sealed side is all of its right half, flanks and valleys too: the lobes hold the fluid."""
+    ring = nw.read_scene("geometries/x_ring/scene.toml")
+    state = Stepper(replace(ring, accuracy=nw.Accuracy.draft())).start()
+    section = Section.of(state.reports[1].section)
+    wet = section.points[section.wetted[5.0][:, 1], 0]
+    for name in ("rod", "groove bottom"):
+        profile = state.stage.contacts[name].profile()
+        assert wet.min() > profile.place[profile.pressure > 0, 0].max() - 0.4, name
+
+
 def test_sections_show_each_fluid_by_its_pressure(ring):
     kept = Stepper(ring).start().reports[2]
     wetted = Section.of(kept.section).wetted
