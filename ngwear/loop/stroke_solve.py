@@ -23,7 +23,7 @@ Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 # Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
-HARDEST = 1 / 16  # of the way to an equilibrium after a jump: a step below which the jump is cut instead
+HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
 
 def solve_stroke(
@@ -62,7 +62,8 @@ def solve_stroke(
     if phase.path and phase.shares is None:
         guesses = []  # on a new mesh a way that needed steps needs them again
     if not any(_solves(state, guess, work) for guess in guesses):
-        path, fewest = _by_steps(state, index, stroke, work, jumps=repeats > 1)
+        starts = bool(stage.floats) and repeats == 0 and state.strokes == 0
+        path, fewest = _by_steps(state, index, stroke, work, hard=repeats > 1 or starts)
     state.work.add(work)
     rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
     shares = stage.shares(stroke)
@@ -96,7 +97,7 @@ def settle_last_stroke(state: State) -> None:
     stage.let_fluid_pass(last.passed)
     if not _solves(state, last.vector, work):
         _set_guess(state, last.vector)
-        work.add(relax(stage.problem, StepOptions(first=0.25)))
+        work.add(relax(stage.problem, StepOptions(first=0.25, smallest=HARDEST)))
     state.work.add(work)
     last.vector = stage.problem.state.vec.FV().NumPy().copy()
 
@@ -110,18 +111,19 @@ def _solves(state: State, guess: Array, work: Work) -> bool:
 
 
 def _by_steps(
-    state: State, index: int, stroke: Stroke, work: Work, *, jumps: bool
+    state: State, index: int, stroke: Stroke, work: Work, *, hard: bool
 ) -> tuple[list[tuple[float, Array]], bool]:
     """Solve a stroke in load steps; return ``Phase.path`` and ``Phase.fewest``.
 
-    In a jump the search ends at a larger load step, because fewer strokes in one solve are easier.
+    The search ends at a larger load step if it is ``hard``: after a jump, because fewer strokes in one solve are easier,
+    and on the first meshes of a part with room to move, because mounting it anew is.
 
     Raises
     ------
     ConvergenceError
         If a load step fails.
     """
-    options = StepOptions(first=0.25, smallest=HARDEST if jumps else StepOptions.smallest)
+    options = StepOptions(first=0.25, smallest=HARDEST if hard else StepOptions.smallest)
     try:
         if state.phases[index].path:
             return _follow(state, index, stroke, work, options)
