@@ -115,8 +115,8 @@ def _by_steps(
 ) -> tuple[list[tuple[float, Array]], bool]:
     """Solve a stroke in load steps; return ``Phase.path`` and ``Phase.fewest``.
 
-    The search ends at a larger load step if it is ``hard``: after a jump, because fewer strokes in one solve are easier,
-    and on the first meshes of a part with room to move, because mounting it anew is.
+    The search ends at a larger load step if it is ``hard``: after a jump, because fewer strokes in one solve are
+    easier, and on the first meshes of a part with room to move, because mounting it anew is.
 
     Raises
     ------
