@@ -49,7 +49,7 @@ def refine_everywhere(state: State) -> None:
     points.follow()
     fine, state.fine = state.fine, np.column_stack([points.centres, FINER * points.edges])
     try:
-        remesh(state)
+        remesh(state, scene=state.stage.scene)
     except Exception:
         state.fine = fine
         raise
@@ -75,7 +75,7 @@ def refine_at(state: State, found: Sequence[Finding]) -> None:
     fine = state.fine
     state.fine = np.vstack([fine, *(finding.places * (1.0, 1.0, FINER) for finding in found)])
     try:
-        remesh(state)
+        remesh(state, scene=state.stage.scene)
     except Exception:
         state.fine = fine
         raise
