@@ -96,10 +96,12 @@ def test_a_finding_asks_for_finer_elements_at_its_places(ring):
     state = Stepper(ring).start()
     x, y = state.stage.body.contour.points[0]
     edge = float(state.stage.body.field(np.array([[x, y]]))[0])
-    before = state.stage.body.mesh.ne
     refine_at(asks(state, [[x, y, edge]]), unresolved(state))
     assert state.stage.body.field(np.array([[x, y]]))[0] <= 0.5 * edge * (1 + 1e-9)
-    assert state.stage.body.mesh.ne > before
+    line, contour = state.stage.body.outline, state.stage.body.contour
+    ends = contour.at(line.t[:, 0]), contour.at(np.minimum(line.t[:, 1], len(contour) - 1e-9))
+    beside = np.linalg.norm(ends[0] - (x, y), axis=1).argmin()
+    assert np.linalg.norm(ends[1][beside] - ends[0][beside]) < 0.7 * edge
     state.refined = LOCALLY
     assert unresolved(asks(state, [[x, y, edge]])) == []
 
