@@ -47,12 +47,7 @@ def refine_everywhere(state: State) -> None:
     """
     points = state.stage.problem.points
     points.follow()
-    fine, state.fine = state.fine, np.column_stack([points.centres, FINER * points.edges])
-    try:
-        remesh(state, scene=state.stage.scene)
-    except Exception:
-        state.fine = fine
-        raise
+    remesh(state, scene=state.stage.scene, fine=np.column_stack([points.centres, FINER * points.edges]))
     state.halved += 1
 
 
@@ -72,13 +67,8 @@ def refine_at(state: State, found: Sequence[Finding]) -> None:
     MeshError
         If the mesh fails a check; the state is then unchanged.
     """
-    fine = state.fine
-    state.fine = np.vstack([fine, *(finding.places * (1.0, 1.0, FINER) for finding in found)])
-    try:
-        remesh(state, scene=state.stage.scene)
-    except Exception:
-        state.fine = fine
-        raise
+    asked = [finding.places * (1.0, 1.0, FINER) for finding in found]
+    remesh(state, scene=state.stage.scene, fine=np.vstack([state.fine, *asked]))
     state.refined += 1
 
 

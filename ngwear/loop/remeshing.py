@@ -54,11 +54,13 @@ def remaining_sliding(state: State) -> dict[str, float]:
     return {} if state.across is None else {"left": left}
 
 
-def remesh(state: State, contour: Outline | None = None, scene: Scene | None = None) -> None:
+def remesh(
+    state: State, contour: Outline | None = None, scene: Scene | None = None, *, fine: Array | None = None
+) -> None:
     """Remesh the present (or the given) outline and transfer the state to the new mesh, in place.
 
     The transferred vectors are first guesses, not equilibria. ``scene`` gives the lengths of the new mesh; default: the
-    present ones, with ``Accuracy.across`` those of the present contacts.
+    present ones, with ``Accuracy.across`` those of the present contacts. ``fine`` replaces ``State.fine``.
 
     Raises
     ------
@@ -73,7 +75,8 @@ def remesh(state: State, contour: Outline | None = None, scene: Scene | None = N
         old.scene = with_contact_lengths(old, phases, state.across)
     if (scene is not None or state.across is not None) and state.ledger.worn == 0:
         contour = unworn_outline(old.scene)
-    wanted = required_sizes(old, phases, across=state.across, fine=state.fine, **remaining_sliding(state))
+    fine = state.fine if fine is None else fine
+    wanted = required_sizes(old, phases, across=state.across, fine=fine, **remaining_sliding(state))
     tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
@@ -82,6 +85,7 @@ def remesh(state: State, contour: Outline | None = None, scene: Scene | None = N
     stage = Stage(old.scene, body, state.background)
     ways = [vector for phase in state.phases for _, vector in phase.path]
     replace_stage(state, stage, transfer(old.problem, phases + ways, stage.problem))
+    state.fine = fine
     state.ledger.remesh_jump = max(state.ledger.remesh_jump, jump)
     state.ledger.remeshes += 1
 

@@ -16,6 +16,7 @@ from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.laws import FrictionLaw
+from ngwear.scene.boundary import Fluid
 from ngwear.scene.contact import Contact
 from ngwear.scene.holding import free_directions
 from ngwear.scene.program import Stroke
@@ -83,7 +84,7 @@ class Stage:
                 mu = self.frictions[spec.name].coefficient if spec.name in self.frictions else None
                 wear = PressureWear(spec.wear_law, modulus=modulus, coefficient=mu)
                 self.contacts[spec.name].pressure_wear = wear
-        self.fluids: dict[str, FluidPressure] = self._fluids() if scene.fluid is not None else {}
+        self.fluids = {} if scene.fluid is None else self._fluids(scene.fluid)
         terms = [self.elasticity, *self.contacts.values(), *self.frictions.values(), *self.fluids.values()]
         self.floats = free_directions(scene)
         if self.floats:
@@ -118,20 +119,16 @@ class Stage:
         self.sliding[spec.name] = FullSliding(contact, law, speed=speed, stepped=scene.deactivation is not None)
         return self.sliding[spec.name]
 
-    def _fluids(self) -> dict[str, FluidPressure]:
+    def _fluids(self, spec: Fluid) -> dict[str, FluidPressure]:
         """Build the fluid pressure from each inlet."""
         from ngwear.effects.fluid_pressure import FluidPressure
 
-        spec, contacts = self.scene.fluid, tuple(self.contacts.values())
+        contacts = tuple(self.contacts.values())
         held = [edge for support in self.scene.supports for edge in support.edges if support.x and support.y]
-        fluids = (
-            {}
-            if spec is None
-            else {
-                name: FluidPressure(spec.edges, edges, contacts, name=name, held=held)
-                for name, edges in spec.inlets.items()
-            }
-        )
+        fluids = {
+            name: FluidPressure(spec.edges, edges, contacts, name=name, held=held)
+            for name, edges in spec.inlets.items()
+        }
         for fluid in fluids.values():
             fluid.others = tuple(other for other in fluids.values() if other is not fluid)
         return fluids
