@@ -19,6 +19,7 @@ from ngwear.geometry.outline import Outline
 from ngwear.surfaces import RigidSurface, WornProfile
 
 Array = NDArray[np.float64]
+BESIDE = 3  # mesh edges from a loaded one to which its smoothed pressure reaches (``Ripples``)
 ENDS = ng.IntegrationRule([(0.0,), (1.0,)], [0.5, 0.5])
 
 
@@ -64,6 +65,7 @@ class OutlineContact(UnilateralContact):
         super().__init__(name, edges, surface, force_controlled=force_controlled, modulus=modulus)
         self.order = order
         self.counter, self.turned, self.wears = counter, 0.0, wears
+        self.only_near = False
         self.slid: ng.Parameter | None = None
         if slides:
             self.slid = self.loads[f"{name} slide [mm]"] = ng.Parameter(0.0)
@@ -79,8 +81,10 @@ class OutlineContact(UnilateralContact):
         space = ng.H1 if self.order == 1 else ng.SurfaceL2
         return ng.Compress(space(body.mesh, order=1, definedon=body.boundary(self.edges)))
 
-    def measure(self) -> Any:
-        return ng.ds(definedon=self._region, intrules={ng.SEGM: ENDS}) if self.order == 1 else super().measure()
+    def measure(self, **where: Any) -> Any:
+        if self.order == 1:
+            return ng.ds(definedon=self._region, intrules={ng.SEGM: ENDS}, **where)
+        return super().measure(**where)
 
     def gap(self, fields: dict[str, Any]) -> Any:
         gap = super().gap(fields)
@@ -88,12 +92,15 @@ class OutlineContact(UnilateralContact):
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         self.section = unknowns.section
+        if self.only_near:
+            self.near = ng.BitArray(self.section.mesh.GetNE(ng.BND))
         if self.counter is not None:
             self._stands_back = ng.GridFunction(unknowns.state[self.pressure_name].space)
         if self.wears:
             self.worn = ng.GridFunction(unknowns.state[self.pressure_name].space)
         super().add_to(form, unknowns)
         self._place_samples(self.section, self._region)
+        self._look_anew()
 
     def lengths(self, unknowns: Unknowns) -> ng.GridFunction:
         body = unknowns.section
@@ -104,6 +111,49 @@ class OutlineContact(UnilateralContact):
         dofs = [space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in line.element]
         field.vec.FV().NumPy()[dofs] = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         return field
+
+    def gather(self) -> None:
+        super().gather()
+        if self.near is not None:
+            self._look_near(self.near)
+
+    def _look_anew(self) -> None:
+        """Forget which edges may touch."""
+        if self.near is not None:
+            self.near.Clear()
+            self._seen, self._ends = np.zeros(len(self.positions), dtype=bool), self.end_places().transpose(2, 0, 1)
+
+    def _look_near(self, near: ng.BitArray) -> None:
+        """Add the edges to ``near`` that may touch, or carry pressure, in the present state; none leaves in a solve.
+
+        The gap is a distance: no point of an edge is nearer to the surface than its nearer end less the edge's length.
+        """
+        displacement = self._state[DISPLACEMENT].vec.FV().NumPy()[self._end_unknowns]
+        place = self._ends + displacement - np.reshape(self._moved(), (2, 1, 1))
+        lengths = np.hypot(*(place[:, :, 1] - place[:, :, 0]))
+        rounded = 0.0 if self.rounding is None else self.rounding.relative
+        reach = (1 + rounded * self.softness.Get()) * lengths + rounded * self.modulus * self.compliance.Get()
+        pressure = self._state[self.pressure_name].vec.FV().NumPy()[self._end_shapes[0]]
+        found, loaded = self.surface.gap(*place).min(axis=1) < reach, pressure.any(axis=1)
+        for shift in range(-BESIDE, BESIDE + 1):  # a superset does no harm where the edges are not one piece
+            found |= np.roll(loaded, shift)
+        for element in self.section.outline.element[self.positions[found & ~self._seen]]:
+            near.Set(int(element))
+        self._seen |= found
+
+    @cached_property
+    def _end_unknowns(self) -> NDArray[np.intp]:
+        """Unknowns of the displacement at both ends of each mesh edge, shape (2, m, 2): those of the mesh's vertices."""
+        parts = self._state[DISPLACEMENT].space.components
+        first = np.cumsum([0, *(part.ndof for part in parts[:-1])])
+        return first[:, None, None] + self.section.outline.vertices[self.positions]
+
+    def _moved(self) -> tuple[float, float]:
+        """Displacement of the rigid surface in the present state [mm]."""
+        travel = self._state[self.travel_name].vec[0] if self.force_controlled else self.load.Get()
+        slid = 0.0 if self.slid is None else self.slid.Get()
+        ax, ay = self.surface.approach
+        return travel * ax - slid * ay, travel * ay + slid * ax
 
     def _place_samples(self, body: MeshedSection, region: ng.Region) -> None:
         """Mapped points at both ends and in the middle of each mesh edge in contact, in the order of the outline."""
@@ -275,6 +325,7 @@ class OutlineContact(UnilateralContact):
 
     def prepare(self) -> None:
         super().prepare()
+        self._look_anew()
         if self.counter is not None:
             self._interpolate(self._stands_back, self.counter.at(self.along()))
         if self.force_controlled:

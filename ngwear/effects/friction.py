@@ -113,7 +113,7 @@ class FullSliding(Friction):
             work += mu * ng.IfPos(self.slip, self.slip, -self.slip) * self._ripples.moved
         self._unknowns = unknowns
         region = unknowns.body.boundary(contact.edges)
-        form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
+        form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2, **contact.where_near)
 
     def gather(self) -> None:
         if self._ripples is not None and not self.stepped:

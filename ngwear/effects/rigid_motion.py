@@ -54,7 +54,7 @@ class RigidMotion(Term):
         self._second = False
         self._hold = ng.Parameter(0.0)
         for contact in self.contacts:
-            contact.rounding = Rounding(modulus)
+            contact.rounding, contact.only_near = Rounding(modulus), True
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         u, v = unknowns.u, unknowns.v
@@ -62,11 +62,10 @@ class RigidMotion(Term):
         self._now = ng.GridFunction(self._state.space)
         self._size = unknowns.body.size
         stiffness = STIFFNESS * self.modulus / self._size
-        work = sum((u[i] - self._now[i]) * v[i] for i in self.directions)
-        form += (self.strength * stiffness * unknowns.kinematics.weight * work).Compile() * ng.ds
         self._held_at = ng.GridFunction(self._state.space)
-        held = sum((u[i] - self._held_at[i]) * v[i] for i in range(2))
-        form += (self._hold * self.modulus / self._size * unknowns.kinematics.weight * held).Compile() * ng.ds
+        free = self.strength * stiffness * sum((u[i] - self._now[i]) * v[i] for i in self.directions)
+        held = self._hold * self.modulus / self._size * sum((u[i] - self._held_at[i]) * v[i] for i in range(2))
+        form += (unknowns.kinematics.weight * (free + held)).Compile() * ng.ds
         self._shift = []
         for i in self.directions:
             self._now.Set(ng.CF(tuple(1.0 if k == i else 0.0 for k in range(2))))

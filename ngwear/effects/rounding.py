@@ -23,9 +23,11 @@ class Rounding:
         self._modulus = modulus
         self._on = ng.Parameter(0.0)
         self._width = ng.Parameter(1.0)
+        self.relative = 0.0
 
     def set(self, relative: float) -> None:
         """Set d over G [-]; 0: the corner itself."""
+        self.relative = relative
         self._on.Set(relative)
         self._width.Set(relative * self._modulus if relative > 0 else 1.0)  # a divisor, too, where it is not used
 

@@ -17,6 +17,7 @@ from ngwear.laws import FrictionLaw
 # It changes the way to the solution only, see ``_laws``; checked by ``verify partial_slip`` and ``tests/stability``.
 RETURN = 0.1  # of mu P: how far a turned slip takes a sliding point back below its limit
 AT_WILL = 1e6  # of mu P: no limit to it
+MIDDLES = {ng.SEGM: ng.IntegrationRule(ng.SEGM, 1), ng.TRIG: ng.IntegrationRule(ng.TRIG, 1)}
 NOTHING = 1e-9  # of G: a pressure that rounding leaves where there is no contact
 
 
@@ -73,11 +74,15 @@ class StickSlip(Friction):
             laws = [contact.rounding.choose(rounded, laws[0])]
         virtual = contact.virtual(unknowns)
         work = sum(a * sum(t[i] * v for i, v in enumerate(virtual)) for a, t in zip(tractions, tangents, strict=True))
-        law = sum(law * unknowns.test[name] for law, name in zip(laws, self.tractions, strict=True))
-        region = body.boundary(contact.edges)
-        form += (-work * weight).Compile() * ng.ds(definedon=region, bonus_intorder=2)
-        points = {ng.SEGM: ng.IntegrationRule(ng.SEGM, 1), ng.TRIG: ng.IntegrationRule(ng.TRIG, 1)}
-        form += (law * weight).Compile() * ng.ds(definedon=region, intrules=points)
+        tests, region = [unknowns.test[name] for name in self.tractions], body.boundary(contact.edges)
+        if contact.where_near:  # everywhere else it is the law of no traction
+            nothing = [0.5 * give * traction for traction in tractions]
+            rest = sum(none * test for none, test in zip(nothing, tests, strict=True))
+            form += (rest * weight).Compile() * ng.ds(definedon=region, intrules=MIDDLES)
+            laws = [law - none for law, none in zip(laws, nothing, strict=True)]
+        form += (-work * weight).Compile() * ng.ds(definedon=region, bonus_intorder=2, **contact.where_near)
+        law = sum(law * test for law, test in zip(laws, tests, strict=True))
+        form += (law * weight).Compile() * ng.ds(definedon=region, intrules=MIDDLES, **contact.where_near)
 
     def _slips(self, fields: dict[str, Any], tangents: tuple[tuple[Any, ...], ...]) -> list[ng.CoefficientFunction]:
         """Slip along each tangent since the last accepted state [mm]."""

@@ -65,6 +65,8 @@ class UnilateralContact(Term):
         ``kappa p phi(p)``.
     rounding : Rounding or None
         To be set before the contact is added to a form, if ``round_off`` is to work.
+    near : BitArray or None
+        Surface elements that may touch in the present solve; None: all.
     finest : float
         Shortest of ``lengths`` [mm], once it has been added to a form.
     softness : ng.Parameter
@@ -90,6 +92,7 @@ class UnilateralContact(Term):
         self.softness = ng.Parameter(1.0)
         self.new_points_slip = ng.Parameter(0.0)
         self.rounding: Rounding | None = None
+        self.near: ng.BitArray | None = None
         self.compliance = ng.Parameter(0.0)
         self.slips_in_part = False
         self.share: ng.GridFunction | None = None
@@ -115,9 +118,14 @@ class UnilateralContact(Term):
     def pressure_space(self, body: Meshed) -> ng.FESpace:
         """Space of the nominal pressure on the named edges."""
 
-    def measure(self) -> Any:
+    def measure(self, **where: Any) -> Any:
         """Integration measure of the contact law on the edges."""
-        return ng.ds(definedon=self._region, bonus_intorder=2)
+        return ng.ds(definedon=self._region, bonus_intorder=2, **where)
+
+    @property
+    def where_near(self) -> dict[str, ng.BitArray]:
+        """Keyword of an integration measure for forms (not for energies) that are zero without pressure."""
+        return {} if self.near is None else {"definedonelements": self.near}
 
     @abc.abstractmethod
     def lengths(self, unknowns: Unknowns) -> ng.GridFunction:
@@ -193,14 +201,27 @@ class UnilateralContact(Term):
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         if self.rounding is not None:
             active = self.rounding.choose(self.rounding.square(pushed) / closure, active)
-        energy = (active - p * p) / (2 * c) * kinematics.weight
-        form += ng.Variation(energy.Compile() * self.measure())
+        if self.near is None:
+            energy = (active - p * p) / (2 * c) * kinematics.weight
+            form += ng.Variation(energy.Compile() * self.measure())
+        else:
+            form += ng.Variation((-p * p / (2 * c) * kinematics.weight).Compile() * self.measure())
+            self._add_near(form, active / (2 * c) * kinematics.weight, unknowns)
         if self.force_controlled:
             # A constant energy density over the whole surface adds up to - force * travel.
             everywhere = body.mesh.Boundaries(".*")
             travel = unknowns.trial[self.travel_name]
             form += ng.Variation(-self.load * travel / self._extent * ng.ds(definedon=everywhere))
         self._measure()
+
+    def _add_near(self, form: ng.BilinearForm, energy: ng.CoefficientFunction, unknowns: Unknowns) -> None:
+        """Add the variation of an energy on the edges that are near: NGSolve's ``Variation`` takes all of a region."""
+        work = sum(
+            energy.Diff(unknowns.trial[name], unknowns.test[name])
+            for name in (DISPLACEMENT, self.pressure_name, self.travel_name)
+            if name in unknowns.trial
+        )
+        form += work.Compile() * self.measure(**self.where_near)
 
     def gather(self) -> None:
         if self.pressure_wear is not None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, iterate
-from ngwear.equilibrium.problem import Problem
+from ngwear.equilibrium.problem import IMBALANCE, Problem
 
 ATTEMPTS = 2  # before the laws are rounded off: what the terms change in the second one, ``Term.attempt`` says
 MORE_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
@@ -94,8 +94,9 @@ def _by_rounded_laws(problem: Problem, options: NewtonOptions) -> Report:
                     continue
                 goal = goal if rounding < math.inf else ROUNDED[0]
                 _round_off(problem, goal)
-                report = _move_over(problem, options)
-                total += report.iterations
+                if IMBALANCE not in problem.parameters:  # else it is a state on the way only: a shorter step is cheaper
+                    report = _move_over(problem, options)
+                    total += report.iterations
                 sharper = SHARPER
             if not report.converged or goal == 0.0:
                 report.iterations = total
