@@ -143,7 +143,7 @@ class OutlineContact(UnilateralContact):
 
     @cached_property
     def _end_unknowns(self) -> NDArray[np.intp]:
-        """Unknowns of the displacement at both ends of each mesh edge, shape (2, m, 2): those of the mesh's vertices."""
+        """Unknowns of the displacement at both ends of each mesh edge, which are mesh vertices; shape (2, m, 2)."""
         parts = self._state[DISPLACEMENT].space.components
         first = np.cumsum([0, *(part.ndof for part in parts[:-1])])
         return first[:, None, None] + self.section.outline.vertices[self.positions]

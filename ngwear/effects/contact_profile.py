@@ -170,7 +170,8 @@ class ContactProfile:
         p = self.pressure
         on = p > max(threshold * p.max(initial=0.0), 1e-12)  # a thousandth: what the mesh makes of nothing at an end
         if on.any() and on[0] and on[-1] and not on.all() and self._closes():  # a zone across the outline's first point
-            off = int(np.argmin(on))
+            opens = int(np.argmin(on))
+            off = opens + int(np.argmax(on[opens:])) // 2  # open nodes stay beside both ends of each zone
             zones = self._from(off).zones(threshold=threshold)
             return [replace(zone, nodes=(zone.nodes + off) % len(p)) for zone in zones]
         joined = np.zeros(len(p) + 1, dtype=bool)  # whether a mesh edge joins node i - 1 to node i
@@ -197,28 +198,28 @@ class ContactProfile:
         return replace(self, **(values | {"edges": (self.edges - first) % k, "mean": self.mean}))
 
     def _zone(self, a: int, b: int) -> Zone:
-        start, end = self._edge(a, -1), self._edge(b - 1, 1)
-        inner = self.place[a:b]
-        path = np.vstack([start, inner, end]) if b - a > 1 else np.vstack([start, end])
-        width = float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
+        (start, before), (end, beyond) = self._edge(a, -1), self._edge(b - 1, 1)
+        between = np.linalg.norm(np.diff(self.place[a:b], axis=0), axis=1).sum()
+        width = max(float(between + before + beyond), 0.0)
         return Zone(start, end, float(self.pressure[a:b].max()), width, np.arange(a, b))
 
-    def _edge(self, node: int, step: int) -> Array:
-        """Where the gap closes beyond the outermost loaded node.
+    def _edge(self, node: int, step: int) -> tuple[Array, float]:
+        """Where the gap closes beside the outermost loaded node, and how far beyond that node [mm].
 
         Outside a contact the gap grows with the power 3/2 of the distance, so that gap^(2/3) is linear in it; its
-        zero lies between the loaded and the first open node.
+        zero lies between the loaded and the first open node, or before the loaded one (negative) if that is open and
+        only shares the pressure of its neighbour.
         """
         first, second = node + step, node + 2 * step
         if not 0 <= first < len(self.t):
-            return self.place[node]
+            return self.place[node], 0.0
         near = np.linalg.norm(self.place[first] - self.place[node])
         fraction = 0.5
         if 0 <= second < len(self.t) and self.gap[second] > self.gap[first] > 0:
             rise = self.gap[second] ** (2 / 3) - self.gap[first] ** (2 / 3)
             apart = np.linalg.norm(self.place[second] - self.place[first])
             fraction = float(np.clip(1 - self.gap[first] ** (2 / 3) / rise * apart / near, -1.0, 1.0))
-        return self.place[node] + fraction * (self.place[first] - self.place[node])
+        return self.place[node] + fraction * (self.place[first] - self.place[node]), fraction * float(near)
 
 
 def nodal_pressure(

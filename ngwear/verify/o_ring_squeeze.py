@@ -3,9 +3,16 @@
 Cord d = 3.53 mm, bore 19.6 mm, Mooney-Rivlin of 75 Shore A (C10 = 0.94, C01 = 0.235 MPa), no friction; the ring may
 grow in the radial direction. Squeeze C of 10, 15, 20 and 25 % of the cord.
 
-Reference: P. B. Lindley, *J. Inst. Rubber Ind.* 1 (1967) 209, fitted to measurements: force per length
-``F = E d (1.25 C^1.5 + 50 C^6)``, and with it Hertz's ``b^2 = 6 F d / (pi E)`` and ``p = 4 F / (pi b)``. It is good to
-about 10 % for C up to 25 %. At C = 10 % the force is 13 % above it, with 12 and with 24 elements across the contact.
+References:
+
+- FElupe 11.3 on 24,576 quads (``tests/benchmarks/o_ring_felupe.py``), good to 0.05 % in force and peak and to 0.15 % in
+  width.
+- P. B. Lindley, *J. Inst. Rubber Ind.* 1 (1967) 209, fitted to measurements: force per length
+  ``F = E d (1.25 C^1.5 + 50 C^6)``, and with it Hertz's ``b^2 = 6 F d / (pi E)`` and ``p = 4 F / (pi b)``. It is taken
+  as good to 10 %. At C = 10 % its force is left out: both programs lie 12.7 % above it. At a small squeeze Hertz's law
+  is almost linear in C, so that C^1.5 falls too fast; for a ring that may grow it lies 7 % above at C = 10 %, and more
+  below. The ratio does not depend on the bore, and no model of rubber with E = 3 G that was tried comes nearer than
+  11 %.
 
 Forces in N/mm, lengths in mm, pressures in MPa.
 """
@@ -30,30 +37,38 @@ from ngwear.verify.base import Check, Stopwatch
 
 CASE = "o_ring_squeeze"
 CORD, BORE, POINTS = 3.53, 19.6, 160
-SQUEEZES = (0.10, 0.15, 0.20, 0.25)
-TOLERANCE = 0.10  # of Lindley's formula, by himself
+LINDLEY, FELUPE = 0.10, 0.005  # tolerances
+REFERENCE = {  # of FElupe: force [N/mm], width [mm] and peak pressure [MPa] at each squeeze
+    0.10: (1.10993, 1.0123, 1.36007),
+    0.15: (1.93721, 1.3195, 1.79054),
+    0.20: (2.97059, 1.6070, 2.21239),
+    0.25: (4.26400, 1.8870, 2.64986),
+}
 
 
 def run() -> Iterator[Check]:
     """Run the case."""
     rubber = MooneyRivlin(c10=0.94, c01=0.235, bulk_modulus=2000.0)
     young = 3 * rubber.shear_modulus
-    for squeeze in SQUEEZES:
+    for squeeze, (force, width, peak) in REFERENCE.items():
         watch = Stopwatch()
         state = Stepper(scene(rubber, squeeze)).start()
         report = state.reports[-1]
-        force = float(report.forces["left plate"][0]) / (math.pi * (BORE + CORD))
         (zone,) = report.contacts["left plate"].zones()
-        wanted = young * CORD * (1.25 * squeeze**1.5 + 50 * squeeze**6)
-        width = math.sqrt(6 * wanted * CORD / (math.pi * young))
-        values = {
-            "force [N/mm]": (force, wanted),
-            "width [mm]": (zone.width, width),
-            "peak pressure [MPa]": (zone.peak, 4 * wanted / (math.pi * width)),
+        by_hand = young * CORD * (1.25 * squeeze**1.5 + 50 * squeeze**6)
+        wide = math.sqrt(6 * by_hand * CORD / (math.pi * young))
+        per_length = float(report.forces["left plate"][0]) / (math.pi * (BORE + CORD))
+        rows = {
+            "force [N/mm]": (per_length, force, by_hand),
+            "width [mm]": (zone.width, width, wide),
+            "peak pressure [MPa]": (zone.peak, peak, 4 * by_hand / (math.pi * wide)),
         }
-        for name, (value, reference) in values.items():
+        for name, (value, fine_mesh, lindley) in rows.items():
             quantity, unit = name.split(" [")
-            yield Check(CASE, f"{quantity}, squeeze {squeeze:.0%} [{unit}", value, reference, TOLERANCE, watch.seconds)
+            what = f"{quantity}, squeeze {squeeze:.0%}"
+            yield Check(CASE, f"{what} [{unit}", value, fine_mesh, FELUPE, watch.seconds)
+            if (quantity, squeeze) != ("force", 0.10):
+                yield Check(CASE, f"{what}, Lindley [{unit}", value, lindley, LINDLEY, watch.seconds)
 
 
 def scene(rubber: MooneyRivlin, squeeze: float) -> Scene:
