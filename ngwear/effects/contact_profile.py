@@ -169,17 +169,24 @@ class ContactProfile:
         """Connected pieces where the pressure exceeds ``threshold`` times its maximum."""
         p = self.pressure
         on = p > max(threshold * p.max(initial=0.0), 1e-12)  # a thousandth: what the mesh makes of nothing at an end
-        if on.any() and on[0] and on[-1] and not on.all() and self._closes():  # a zone across the outline's first point
-            opens = int(np.argmin(on))
-            off = opens + int(np.argmax(on[opens:])) // 2  # open nodes stay beside both ends of each zone
-            zones = self._from(off).zones(threshold=threshold)
-            return [replace(zone, nodes=(zone.nodes + off) % len(p)) for zone in zones]
-        joined = np.zeros(len(p) + 1, dtype=bool)  # whether a mesh edge joins node i - 1 to node i
+        if not on.any() or on.all() or not self._closes():
+            return self._pieces(on)
+        # Around the whole outline: begin in the middle of the longest open piece, so that no zone lies across the end.
+        loaded, n = np.flatnonzero(on), len(on)
+        opens = np.diff(loaded, append=loaded[0] + n)
+        off = int(loaded[opens.argmax()] + opens.max() // 2) % n
+        zones = self._from(off)._pieces(np.roll(on, -off))
+        zones = [replace(zone, nodes=(zone.nodes + off) % n) for zone in zones]
+        return sorted(zones, key=lambda zone: int(zone.nodes[0]))
+
+    def _pieces(self, on: NDArray[np.bool_]) -> list[Zone]:
+        """Connected pieces of these nodes."""
+        joined = np.zeros(len(on) + 1, dtype=bool)  # whether a mesh edge joins node i - 1 to node i
         joined[self.edges.max(axis=1)[np.abs(np.diff(self.edges, axis=1).ravel()) == 1]] = True
         zones = []
         start: int | None = None
-        for i in range(len(p) + 1):
-            inside = i < len(p) and on[i]
+        for i in range(len(on) + 1):
+            inside = i < len(on) and on[i]
             if start is not None and not (inside and joined[i]):
                 zones.append(self._zone(start, i))
                 start = None

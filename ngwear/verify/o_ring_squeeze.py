@@ -3,7 +3,7 @@
 Cord d = 3.53 mm, bore 19.6 mm, Mooney-Rivlin of 75 Shore A (C10 = 0.94, C01 = 0.235 MPa), no friction; the ring may
 grow in the radial direction. Squeeze C of 10, 15, 20 and 25 % of the cord.
 
-References:
+It is compared with
 
 - FElupe 11.3 on 24,576 quads (``tests/benchmarks/o_ring_felupe.py``), good to 0.05 % in force and peak and to 0.15 % in
   width.
