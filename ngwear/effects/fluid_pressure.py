@@ -75,6 +75,9 @@ class FluidPressure(Term):
     ----------
     others : sequence of FluidPressure
         The fluids from the other inlets; none at first.
+    traps : bool
+        Whether pockets keep the fluid's pressure (``TrappedFluid``), False at first: then it does not stay behind a
+        contact when its pressure falls.
 
     Raises
     ------
@@ -97,6 +100,7 @@ class FluidPressure(Term):
         self.edges, self.inlet, self.contacts = tuple(edges), tuple(inlet), tuple(contacts)
         self.name, self.held = name, tuple(held)
         self.others: tuple[FluidPressure, ...] = ()
+        self.traps, self._last = False, 0.0
         if not self.inlet or not set(self.inlet) <= set(self.edges):
             raise SceneError("fluid.inlet", list(self.inlet), f"must name some of the fluid's edges {list(self.edges)}")
         self.pressure = ng.Parameter(0.0)
@@ -155,7 +159,9 @@ class FluidPressure(Term):
         stops = self._stops()
         share = np.where(self._inlet, 1.0, 0.0)
         self.leaks = False
-        if self.pressure.Get() == 0.0:
+        falls = self.pressure.Get() < self._last if self.traps else self.pressure.Get() == 0.0
+        self._last = self.pressure.Get()
+        if falls:
             self._passed, self._drained = [0, 0], [False, False]
         elif self._solved:
             self._pass(touching, stops)
@@ -271,6 +277,7 @@ class FluidPressure(Term):
     def passed(self, places: np.ndarray) -> None:
         # A stroke begins: nothing of the last one but these places counts, so that a resumed run goes the same way.
         self._reached, self._drained, self._moves = [0, 0], [False, False], 0
+        self._last = self.pressure.Get()
         for k, (_, path) in enumerate(self._paths):
             known = bool(np.isfinite(places[k]).all())
             apart = np.linalg.norm(self._middles[path] - places[k], axis=1) if known else np.zeros(1)

@@ -27,6 +27,8 @@ class StepOptions:
         Fraction of the load change tried first, in (0, 1].
     smallest : float
         Fraction below which the stepping gives up.
+    largest : float
+        Fraction up to which the next step grows.
     easy : int
         Iterations up to which the next step grows.
     max_updates : int
@@ -35,6 +37,7 @@ class StepOptions:
 
     first: float = 1.0
     smallest: float = 1 / 512  # nine halvings; a way that needs more ends in a report
+    largest: float = 1.0
     easy: int = 8  # a third of the most iterations
     max_updates: int = 12  # a front that still moves is left then, within an edge of its place
     newton: NewtonOptions = field(default_factory=NewtonOptions)
@@ -153,7 +156,7 @@ def advance(
         if on_step is not None:
             on_step(done, report)
         if report.iterations <= options.easy:
-            step *= 2
+            step = min(2 * step, max(step, options.largest))
         elif report.iterations > 2 * options.easy and not report.rounded:
             step /= 2
     return work

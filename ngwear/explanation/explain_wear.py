@@ -11,6 +11,7 @@ from ngwear.laws import Constant, FrictionLaw
 from ngwear.loop.element_sizes import with_contact_lengths, with_mounting_lengths
 from ngwear.loop.law_changes import friction_range
 from ngwear.materials import Folding
+from ngwear.scene.boundary import TRAPPED
 from ngwear.scene.contact import Contact
 from ngwear.scene.deactivation import Deactivation
 from ngwear.scene.holding import free_directions
@@ -97,6 +98,8 @@ def _present(scene: Scene) -> dict[str, str]:
     if scene.fluid is not None:
         inlets = ", ".join(edge for edges in scene.fluid.inlets.values() for edge in edges)
         present["fluid pressure"] = f"from {inlets} to the first point in contact"
+        if scene.fluid.pockets == TRAPPED:
+            present["fluid pressure"] += "; pockets that contacts cut off keep theirs"
         if not any(stroke.highest_pressure for stroke in scene.program.cycle):
             present["fluid pressure"] += (
                 "; no stroke has a pressure: without [fluid] the result is the same in less time"

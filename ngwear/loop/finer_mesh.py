@@ -118,7 +118,7 @@ def advance_on_finer(
 def _carry_on(state: State, begin: Array, work: Work) -> Array:
     """Take the present state and that at the beginning of the stroke, which is returned, to finer elements."""
     before, phases = state.stage, state.phases
-    loads, passed = before.problem.get_loads(), before.fluid_passed()
+    loads, passed, left = before.problem.get_loads(), before.fluid_passed(), before.fluid_left()
     state.phases = [*phases, Phase(begin), Phase(before.problem.state.vec.FV().NumPy().copy())]
     try:
         refine_everywhere(state)
@@ -129,6 +129,7 @@ def _carry_on(state: State, begin: Array, work: Work) -> Array:
     stage.begin(begun.vector)
     stage.problem.set_loads(loads)
     stage.let_fluid_pass(passed)
+    stage.leave_fluid(left)
     stage.problem.state.vec.FV().NumPy()[:] = now.vector
     for term in stage.problem.terms:
         term.refresh()

@@ -36,8 +36,13 @@ def section_snapshot(stage: Stage) -> Arrays:
     }
     if stage.fluids:
         ends, shares = body.outline.vertices, [fluid.shares for fluid in stage.fluids.values()]
+        pressures = [fluid.pressure.Get() for fluid in stage.fluids.values()]
+        if stage.trapped is not None:
+            in_pockets = [q for q in np.unique(stage.trapped.pressures) if q > 0]
+            shares += [np.where(stage.trapped.pressures == q, 1.0, 0.0) for q in in_pockets]
+            pressures += in_pockets
         inlet, edge = np.nonzero(np.array(shares) > 0)
-        out["fluid pressure [MPa]"] = np.array([fluid.pressure.Get() for fluid in stage.fluids.values()])
+        out["fluid pressure [MPa]"] = np.array(pressures)
         out["wetted edges"] = np.column_stack([ends[edge, 0], nodes.middle(ends[edge]), ends[edge, 1]])
         out["wetted share [-]"] = np.array(shares)[inlet, edge]
         out["wetted from inlet"] = inlet

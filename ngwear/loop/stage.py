@@ -16,7 +16,7 @@ from ngwear.errors import SceneError
 from ngwear.fields.kinematics import Axisymmetric, PlaneStrain
 from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.laws import FrictionLaw
-from ngwear.scene.boundary import Fluid
+from ngwear.scene.boundary import TRAPPED, Fluid
 from ngwear.scene.contact import Contact
 from ngwear.scene.holding import free_directions
 from ngwear.scene.program import Stroke
@@ -28,6 +28,7 @@ if TYPE_CHECKING:  # modules of effects that the scene does not have are not imp
     from ngwear.effects.friction import Friction, FullSliding
     from ngwear.effects.stick_slip import StickSlip
     from ngwear.effects.stroke_memory import StrokeMemory
+    from ngwear.effects.trapped_fluid import TrappedFluid
     from ngwear.fields.background_mesh import Background
 
 Array = NDArray[np.float64]
@@ -86,6 +87,13 @@ class Stage:
                 self.contacts[spec.name].pressure_wear = wear
         self.fluids = {} if scene.fluid is None else self._fluids(scene.fluid)
         terms = [self.elasticity, *self.contacts.values(), *self.frictions.values(), *self.fluids.values()]
+        self.trapped: TrappedFluid | None = None
+        if scene.fluid is not None and scene.fluid.pockets == TRAPPED:
+            from ngwear.effects.trapped_fluid import TrappedFluid
+
+            fluids = tuple(self.fluids.values())
+            self.trapped = TrappedFluid(scene.fluid.edges, fluids, tuple(self.contacts.values()))
+            terms.append(self.trapped)
         self.floats = free_directions(scene)
         if self.floats:
             from ngwear.effects.rigid_motion import RigidMotion
@@ -130,6 +138,7 @@ class Stage:
             for name, edges in spec.inlets.items()
         }
         for fluid in fluids.values():
+            fluid.traps = spec.pockets == TRAPPED
             fluid.others = tuple(other for other in fluids.values() if other is not fluid)
         return fluids
 
@@ -167,6 +176,15 @@ class Stage:
         """Set the places up to which the fluids have lifted contacts, before a solve."""
         for k, fluid in enumerate(self.fluids.values()):
             fluid.passed = np.full((2, 2), np.nan) if places is None else places.reshape(-1, 2, 2)[k]
+
+    def fluid_left(self) -> Array | None:
+        """What the fluids leave on the outline in the present state, for ``leave_fluid``; None if pockets hold none."""
+        return None if self.trapped is None else self.trapped.leaves
+
+    def leave_fluid(self, left: Array | None) -> None:
+        """Begin a stroke with what the fluids have left in the last one."""
+        if self.trapped is not None and left is not None:
+            self.trapped.leave(left)
 
     @property
     def has_stick_slip(self) -> bool:
@@ -317,6 +335,8 @@ class Stage:
             if name in self.frictions:
                 found[f"{name} friction"] = self.frictions[name].force()
         found |= {name: fluid.force() for name, fluid in self.fluids.items()}
+        if self.trapped is not None:
+            found["trapped fluid"] = self.trapped.force()
         if self.scene.axisymmetric:
             found["hoop"] = np.array([0.0, -self.problem.hoop_force()])
         return found

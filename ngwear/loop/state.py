@@ -78,6 +78,8 @@ class Phase:
         Whether half as many load steps have failed.
     passed : array or None
         Reference places up to which the fluid has lifted contacts (``FluidPressure.passed``); None without.
+    left : array or None
+        What the fluids leave at its end (``TrappedFluid.leaves``), if pockets keep it.
     """
 
     vector: Array
@@ -88,6 +90,7 @@ class Phase:
     path: list[tuple[float, Array]] = field(default_factory=list)
     fewest: bool = False
     passed: Array | None = None
+    left: Array | None = None
 
 
 @dataclass
@@ -283,6 +286,8 @@ class StrokeReport:
         Fluids that no contact holds.
     turned : float
         Angle by which a part with room to move has turned [degrees].
+    trapped : float or None
+        Highest pressure in a pocket [MPa]; None if pockets keep none.
     """
 
     phase: int
@@ -306,3 +311,4 @@ class StrokeReport:
     findings: tuple[Finding, ...] = ()
     blow_by: tuple[BlowBy, ...] = ()
     turned: float = 0.0
+    trapped: float | None = None

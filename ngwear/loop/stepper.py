@@ -32,7 +32,7 @@ from ngwear.loop.section_snapshot import section_snapshot
 from ngwear.loop.solution_checks import findings
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
-from ngwear.loop.stroke_solve import recorder, settle_last_stroke, solve_stroke
+from ngwear.loop.stroke_solve import EMPTIES, empties, recorder, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.boundary import GO_ON
 from ngwear.scene.scene import Scene
@@ -126,6 +126,7 @@ class Stepper:
         """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
         cycle, begin = self.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
         state.phases = []
+        state.stage.leave_fluid(np.empty((0, 3)))
         state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
         if self._lost_elements is not None:
             self._lost_elements.begin(state)
@@ -133,16 +134,21 @@ class Stepper:
             stage, halved = state.stage, state.halved
             begin = stage.problem.state.vec.FV().NumPy().copy()
             stage.begin(begin)
+            stage.leave_fluid(stage.fluid_left())
             path: list[tuple[float, Array]] = []
             on_step = recorder(stage.problem, path)
             loads = stage.stroke_loads(stroke)
-            work = advance_on_finer(state, loads, StepOptions(first=0.5), begin=begin, on_step=on_step)
+            options = StepOptions(first=0.5)
+            if empties(state, i):
+                options = StepOptions(first=EMPTIES, largest=EMPTIES)
+            work = advance_on_finer(state, loads, options, begin=begin, on_step=on_step)
             stage = state.stage
             state.work.add(work)
             needed = i > 0 and work.retries > 0 and stage.has_stick_slip and self.scene.deactivation is None
             needed &= state.halved == halved  # the way on another mesh is of no use
             vector = stage.problem.state.vec.FV().NumPy().copy()
-            state.phases.append(Phase(vector, path=path if needed else [], passed=stage.fluid_passed()))
+            path = path if needed else []
+            state.phases.append(Phase(vector, path=path, passed=stage.fluid_passed(), left=stage.fluid_left()))
             on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
 
     def _refine(self, state: State) -> None:
@@ -396,5 +402,6 @@ class Stepper:
             loaded={} if self._lost_elements is None else self._lost_elements.loaded(stage),
             section=section_snapshot(stage) if kept else {},
             turned=stage.problem.turned() if stage.floats else 0.0,
+            trapped=None if stage.trapped is None else float(stage.trapped.pressures.max()),
             findings=findings(stage, profiles, forces, self.scene.program.cycle[index]),
         )

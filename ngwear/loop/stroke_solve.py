@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 # Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
+EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is the pressure that a pocket keeps
 HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
 
@@ -42,6 +43,7 @@ def solve_stroke(
     problem = stage.problem
     vector = problem.state.vec.FV().NumPy()
     stage.begin(state.phases[index - 1].vector)
+    stage.leave_fluid(state.phases[index - 1].left)
     problem.set_loads(stage.stroke_loads(stroke))
     for friction in stage.frictions.values():
         friction.coefficient.set_state(sliding.middle, stroke.speed)
@@ -59,7 +61,7 @@ def solve_stroke(
     work, path, fewest = Work(), phase.path, phase.fewest
     stage.let_fluid_pass(phase.passed)
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
-    if phase.path and phase.shares is None:
+    if (phase.path and phase.shares is None) or empties(state, index):
         guesses = []  # on a new mesh a way that needed steps needs them again
     if not any(_solves(state, guess, work) for guess in guesses):
         starts = bool(stage.floats) and repeats == 0 and state.strokes == 0
@@ -76,6 +78,7 @@ def solve_stroke(
         path=path,
         fewest=fewest,
         passed=stage.fluid_passed(),
+        left=stage.fluid_left(),
     )
     return work.iterations
 
@@ -95,6 +98,7 @@ def settle_last_stroke(state: State) -> None:
     stage.problem.set_loads(stage.stroke_loads(stage.scene.program.cycle[-1]))
     stage.begin(last.vector)
     stage.let_fluid_pass(last.passed)
+    stage.leave_fluid(last.left)
     if not _solves(state, last.vector, work):
         _set_guess(state, last.vector)
         work.add(relax(stage.problem, StepOptions(first=0.25, smallest=HARDEST)))
@@ -144,12 +148,21 @@ def _set_guess(state: State, vector: Array) -> None:
         unfold(problem)
 
 
+def empties(state: State, index: int) -> bool:
+    """Whether a fluid that pockets may keep has a lower pressure than in the stroke before."""
+    cycle, fluids = state.stage.scene.program.cycle, state.stage.fluids
+    if state.stage.trapped is None:
+        return False
+    return any(cycle[index].pressure_at(name) < cycle[index - 1].pressure_at(name) for name in fluids)
+
+
 def _begin_path(state: State, index: int) -> None:
     """Set the end of the previous stroke of the cycle and its loads; friction counts the slip from there."""
     stage, before = state.stage, state.phases[index - 1].vector
-    stage.let_fluid_pass(state.phases[index - 1].passed)
-    _set_guess(state, before)
     stage.problem.set_loads(stage.stroke_loads(state.stage.scene.program.cycle[index - 1]))
+    stage.let_fluid_pass(state.phases[index - 1].passed)
+    stage.leave_fluid(state.phases[index - 1].left)
+    _set_guess(state, before)
     stage.begin(stage.problem.state.vec.FV().NumPy())
 
 
@@ -205,8 +218,10 @@ def _approach(state: State, index: int, stroke: Stroke, work: Work, options: Ste
     """
     stage, problem = state.stage, state.stage.problem
     _set_guess(state, state.phases[index].vector)
-    follows = stage.has_stick_slip and stage.scene.deactivation is None
-    if not follows:
+    follows, lowered = stage.has_stick_slip and stage.scene.deactivation is None, empties(state, index)
+    if lowered:
+        options = replace(options, first=EMPTIES, largest=EMPTIES)
+    elif not follows:
         try:
             work.add(relax(problem, options))
             return []
@@ -215,7 +230,7 @@ def _approach(state: State, index: int, stroke: Stroke, work: Work, options: Ste
     _begin_path(state, index)
     path: list[tuple[float, Array]] = []
     work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
-    return path if follows else []
+    return path if follows and not lowered else []
 
 
 def recorder(problem: Problem, path: list[tuple[float, Array]]) -> Callable[[float, Report], None]:

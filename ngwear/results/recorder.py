@@ -175,6 +175,8 @@ class Recorder:
         row |= {f"{name} specific wear rate [mm^2/N]": rate for name, rate in report.wear_rates.items()}
         if scene.fluid is not None:
             row["blow-by [-]"] = len(report.blow_by)
+        if report.trapped is not None:
+            row["pressure trapped in pockets [MPa]"] = report.trapped
         if report.leak_pressure is not None:
             row[LEAK], row["leaks first at [-]"] = report.leak_pressure
         row |= {

@@ -9,6 +9,7 @@ from ngwear.errors import check_fields, require
 
 FLUID = "fluid"  # name of the only inlet
 GO_ON, END = "go on", "end"
+AMBIENT, TRAPPED = "ambient", "trapped"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +28,9 @@ class Fluid:
     blow_by : str
         What a run does where no contact holds the fluid: "go on" (default; the results are then for a seal that does
         not open) or "end".
+    pockets : str
+        What a pocket holds that contacts cut off from the fluid, such as the valley between the two lobes of an X-ring:
+        "ambient" (default), or "trapped": the fluid that was there, at its pressure, as far as the contacts carry it.
     leak_pressure : bool
         Whether to compute the fluid pressure that the contacts hold. The mesh is then also refined where the fluid
         meets a contact, because the contact pressure often has its peak there.
@@ -36,10 +40,13 @@ class Fluid:
     inlet: Sequence[str] | Mapping[str, Sequence[str]]
     leak_pressure: bool = False
     blow_by: str = GO_ON
+    pockets: str = AMBIENT
 
     def __post_init__(self) -> None:
         check_fields(self, "fluid")
         require(self.blow_by in (GO_ON, END), "fluid.blow_by", self.blow_by, f"must be '{GO_ON}' or '{END}'")
+        remedy = f"must be '{AMBIENT}' or '{TRAPPED}'"
+        require(self.pockets in (AMBIENT, TRAPPED), "fluid.pockets", self.pockets, remedy)
         known: set[str] = set()
         require(bool(self.inlets), "fluid.inlet", self.inlet, "must name some of the fluid's edges")
         for name, edges in self.inlets.items():

@@ -1,0 +1,99 @@
+"""Pockets between two contacts with a surface: what they hold when the fluid's pressure falls."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ngwear as nw
+from ngwear.effects.fluid_pressure import LESS
+from ngwear.geometry.outline import Outline
+from ngwear.loop.stepper import Stepper
+from ngwear.surfaces import Plane
+
+POINTS = np.array(
+    [[0, 0.9], [0.85, 0.06], [1, 0.1], [0.45, 0.9], [2, 0.9], [2, -0.03], [3, -0.03], [3, 2], [0, 2]]
+)  # a lip that leans into the pocket, so that the fluid from the left lifts it, and a foot that holds the fluid
+NAMES = ("lip", "tip", "inside", "roof", "flank", "foot", "right", "top", "left")
+WET = NAMES[:6]
+HIGH = 0.05  # MPa
+
+
+def arch(pockets, pressures=(HIGH, 0.0)):
+    """A block with a lip and a foot on a plate, held at its top; the fluid comes from the left."""
+    outline = Outline(POINTS, NAMES, np.ones(len(POINTS), dtype=bool))
+    plate = nw.Contact("plate", edges=WET, surface=Plane(point=(0.0, 0.1), normal_vector=(0.0, 1.0)))
+    return nw.Scene(
+        "arch",
+        nw.Part(outline, material=nw.NeoHooke(shear=1.0, bulk_modulus=1000.0)),
+        contacts=[plate],
+        supports=[nw.Support(edges=["top"])],
+        fluid=nw.Fluid(edges=["left", *WET], inlet=["left"], pockets=pockets),
+        program=nw.Program(
+            strokes=len(pressures),
+            cycle=[nw.Stroke(f"{i}: {p} MPa", travel=1.0, pressure=p) for i, p in enumerate(pressures)],
+        ),
+        accuracy=nw.Accuracy(patch=0.05, coarse=0.2, mounting=0.05),
+        axisymmetric=False,
+    )
+
+
+@pytest.fixture(scope="module")
+def trapped():
+    return Stepper(arch("trapped")).start()
+
+
+def test_a_pocket_keeps_what_its_contacts_carry(trapped):
+    """The fluid lifts the lip; when its pressure is gone, the pocket presses the lip down."""
+    full, after = trapped.reports
+    assert full.trapped == 0.0  # the fluid itself is there
+    assert full.forces["fluid"][1] > 1.9 * HIGH  # on lip and roof
+    assert after.trapped == pytest.approx(HIGH)
+    ((pocket, holds),) = trapped.stage.trapped._pockets()
+    assert holds > HIGH
+    assert {"inside", "roof", "flank"} <= set(trapped.stage.body.outline.names[pocket])
+
+
+def test_its_force_is_its_pressure_on_its_width(trapped):
+    after, profile = trapped.reports[1], trapped.stage.contacts["plate"].profile()
+    ends = np.sort([place[0] for zone in profile.zones() for place in (zone.start, zone.end)])
+    assert after.forces["trapped fluid"][1] == pytest.approx(HIGH * (ends[2] - ends[1]), rel=0.05)
+
+
+def test_what_they_do_not_carry_leaks_out():
+    state = Stepper(arch("trapped")).start()
+    term, given = state.stage.trapped, state.phases[0].left.copy()
+    ((_, holds),) = term._pockets()
+    given[:, 2] = 4 * holds
+    term.leave(given)
+    term.prepare()  # as if solved with it
+    assert term.refresh()
+    assert term.pressures.max() == pytest.approx(holds / (1 - LESS))
+
+
+def test_ambient_pockets_keep_nothing():
+    state = Stepper(arch("ambient")).start()
+    assert state.reports[1].trapped is None
+    assert "trapped fluid" not in state.reports[1].forces
+
+
+def test_what_was_never_wetted_holds_nothing():
+    state = Stepper(arch("trapped", pressures=(0.0, 0.0))).start()
+    assert [report.trapped for report in state.reports] == [0.0, 0.0]
+
+
+def test_it_goes_on_with_the_strokes_and_on_new_meshes(trapped):
+    """As much after a run with wear, remeshes and cycles as in the first one."""
+    result = nw.run(replace(arch("trapped"), program=replace(arch("trapped").program, strokes=20)), progress=False)
+    column = [row["pressure trapped in pockets [MPa]"] for row in result.records.rows]
+    assert max(column) == pytest.approx(trapped.reports[1].trapped, rel=0.05)
+
+
+def test_a_pressure_that_falls_leaves_the_pocket_at_the_higher_one():
+    state = Stepper(arch("trapped", pressures=(HIGH, 0.4 * HIGH))).start()
+    assert state.reports[1].trapped == pytest.approx(HIGH)
+
+
+def test_a_wrong_choice_is_refused():
+    with pytest.raises(nw.SceneError, match=r"fluid.pockets = 'vacuum'.*'ambient' or 'trapped'"):
+        arch("vacuum")
