@@ -20,6 +20,9 @@ SWINGS, LEAST = 2, 0.1  # updates with whole steps; least share of the way betwe
 # Of the fluid's pressure: how much less a contact may carry and still hold it. A worn lip carries hardly more than the
 # fluid, and a few elements across it err by some per cent. Settled on a U-cup (geometries/u_cup, reference).
 LESS = 0.05
+# Of the fluid's pressure: how much less counts as blow-by. So exact is the contact pressure of a part that the fluid
+# presses into its groove (geometries/rectangular_ring).
+ERRS = 0.01
 
 
 @dataclass(frozen=True)
@@ -322,13 +325,13 @@ class FluidPressure(Term):
     def blow_by(self) -> BlowBy | None:
         """Where no contact holds the fluid in the present state; None if all do.
 
-        That is where the highest contact pressure on its way is below the fluid's. A way that ends at a support, or at
-        an inlet with the same pressure or a higher one, is closed.
+        That is where the highest contact pressure on its way is below the fluid's, by more than ``ERRS``. A way that
+        ends at a support, or at an inlet with the same pressure or a higher one, is closed.
         """
         for way, beyond in zip(self._ways(), self._beyond, strict=True):
             other = self._at(beyond)
             closed = beyond in self.held or (other is not None and other.pressure.Get() >= way.pressure)
-            if way.holds < way.pressure and not closed:
+            if way.holds < (1 - ERRS) * way.pressure and not closed:
                 return way
         return None
 

@@ -53,16 +53,19 @@ class Finding:
 
 
 def findings(
-    stage: Stage, profiles: Mapping[str, ContactProfile], forces: Mapping[str, Array], stroke: Stroke
+    stage: Stage, profiles: Mapping[str, ContactProfile], forces: Mapping[str, Array], stroke: Stroke, *, worn: bool
 ) -> tuple[Finding, ...]:
-    """Findings of the present equilibrium; ``profiles`` and ``forces`` are those of the stroke's report."""
-    found = [*_overlaps(stage), *_imbalance(stage, forces), *_crushed(stage), *_blow_by(stage, stroke)]
+    """Findings of the present equilibrium; ``profiles`` and ``forces`` are those of the stroke's report.
+
+    ``worn``: whether the part has worn, or wears in this solve.
+    """
+    found = [*_overlaps(stage, worn=worn), *_imbalance(stage, forces), *_crushed(stage), *_blow_by(stage, stroke)]
     for name, profile in profiles.items():
         found += _zigzag(name, profile)
     return tuple(found)
 
 
-def _overlaps(stage: Stage) -> Iterator[Finding]:
+def _overlaps(stage: Stage, *, worn: bool) -> Iterator[Finding]:
     """Nodes of the whole outline that lie inside a surface, whether its contact lists their edges or not."""
     line, nodes, u = stage.body.outline, ElementNodes(stage.body.mesh), stage.problem.fields[DISPLACEMENT]
     values = nodes.values(ng.CF((ng.x, ng.y, u[0], u[1])))
@@ -74,7 +77,7 @@ def _overlaps(stage: Stage) -> Iterator[Finding]:
         listed = np.stack([own | np.roll(own, 1), own])  # the node between two edges belongs to both
         gap = _gap(contact, place)
         # In a contact that wears, a solve ends with the depth that it wears inside the surface.
-        resting = listed if not contact.wears else np.zeros_like(listed)
+        resting = np.zeros_like(listed) if worn and contact.wears else listed
         for among, advice in ((~listed, UNLISTED), (resting, COARSE)):
             depth = np.where(among, -gap - DEEP * length, 0.0)
             worst = np.unravel_index(np.argmax(depth), depth.shape)

@@ -380,7 +380,7 @@ class Stepper:
         stage = state.stage
         kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
         profiles = {spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed}
-        forces = stage.forces()
+        forces, worn = stage.forces(), sliding.repeats > 0 or state.ledger.worn > 0
         return StrokeReport(
             phase=index,
             last_stroke=state.strokes,
@@ -403,5 +403,5 @@ class Stepper:
             section=section_snapshot(stage) if kept else {},
             turned=stage.problem.turned() if stage.floats else 0.0,
             trapped=None if stage.trapped is None else float(stage.trapped.pressures.max()),
-            findings=findings(stage, profiles, forces, self.scene.program.cycle[index]),
+            findings=findings(stage, profiles, forces, self.scene.program.cycle[index], worn=worn),
         )

@@ -37,6 +37,7 @@ from ngwear.scene.accuracy import PRESETS
 
 STROKES, TRAVEL = 2000, 20.0
 INSIDE, INSIDE_SHARE = 1e-3, 0.01  # a node may lie so far inside a surface: mm, and share of the mesh edge
+WORN_BY = ("rod", "bore")
 ALTERNATES, IMBALANCE, DIFFERS = 0.1, 1e-5, 0.05
 COMPARED = ("maximum depth", "peak pressure")
 WRONG, CRASHED, LIMIT, GAVE_UP = "silent wrong answer", "crashed", "time limit", "gave up"
@@ -209,9 +210,11 @@ def faults(result: ResultFile) -> list[str]:
 def inside(section: Section, result: ResultFile) -> list[str]:
     """Surfaces that nodes of the deformed outline lie in, and how deep."""
     nodes = section.points[section.border]
-    allowed = INSIDE + INSIDE_SHARE * np.linalg.norm(nodes[:, 2] - nodes[:, 0], axis=1)
+    resting = INSIDE + INSIDE_SHARE * np.linalg.norm(nodes[:, 2] - nodes[:, 0], axis=1)
+    worn = np.diff(result.series["maximum depth [mm]"], prepend=0.0).max()  # in one solve, which ends inside by it
     found = []
     for name, surface in result.surfaces.items():
+        allowed = resting + worn * (name in WORN_BY)
         depth = -np.asarray(surface.gap(nodes[..., 0], nodes[..., 1])) - allowed[:, None]
         row, column = np.unravel_index(np.argmax(depth), depth.shape)
         if depth[row, column] > 0:

@@ -40,7 +40,7 @@ def solved(scene):
 def found(stage, report, **changes):
     profiles, forces = report.contacts | changes.get("contacts", {}), report.forces | changes.get("forces", {})
     stroke = changes.get("stroke", stage.scene.program.cycle[0])
-    return {f.key: f for f in findings(stage, profiles, forces, stroke)}
+    return {f.key: f for f in findings(stage, profiles, forces, stroke, worn=changes.get("worn", False))}
 
 
 def test_a_good_solve_has_no_finding(solved):
@@ -130,3 +130,13 @@ def test_a_zone_across_the_outlines_first_point_is_one(solved):
         assert other.width == pytest.approx(zone.width, rel=0.1)  # its ends are extrapolated where nodes follow
         assert other.peak == zone.peak
         assert set((other.nodes + first) % len(profile.t)) == set(zone.nodes)
+
+
+def test_a_part_that_wears_may_end_a_solve_inside_the_surface_that_wears_it(scene):
+    """By the depth that it wears; before the first stroke it may not."""
+    worn = replace(scene, contacts=[replace(scene.contacts[0], specific_wear_rate=1e-6)])
+    state = Stepper(worn).start()
+    problem, stage = state.stage.problem, state.stage
+    problem.state.vec.FV().NumPy()[problem.part("displacement")] *= 0.9  # less than the plate pushes
+    assert any("overlap" in key for key in found(stage, state.reports[-1]))
+    assert not any("overlap" in key for key in found(stage, state.reports[-1], worn=True))
