@@ -153,8 +153,8 @@ class Stepper:
 
     def _refine(self, state: State) -> None:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
-        ahead, levels = remaining_sliding(state), 4  # more remeshes improve little here; the run remeshes where it must
-        floats = bool(state.stage.floats)
+        ahead, floats = remaining_sliding(state), bool(state.stage.floats)
+        levels = 2 if floats else 4  # more remeshes improve little here; the run remeshes where it must
         provisional = state.across is not None  # the mounting mesh may also be too fine
         while state.ledger.remeshes < levels:
             vectors, before = [phase.vector for phase in state.phases], state.stage.scene
