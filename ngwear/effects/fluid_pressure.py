@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import ngsolve as ng
 import numpy as np
@@ -20,30 +19,6 @@ SWINGS, LEAST = 2, 0.1  # updates with whole steps; least share of the way betwe
 # Of the fluid's pressure: how much less a contact may carry and still hold it. A worn lip carries hardly more than the
 # fluid, and a few elements across it err by some per cent. Settled on a U-cup (geometries/u_cup, reference).
 LESS = 0.05
-# Of the fluid's pressure: how much less counts as blow-by. So exact is the contact pressure of a part that the fluid
-# presses into its groove (geometries/rectangular_ring).
-ERRS = 0.01
-
-
-@dataclass(frozen=True)
-class BlowBy:
-    """A fluid that no contact holds.
-
-    Attributes
-    ----------
-    inlet, edge : str
-        Where it comes from, and the edge whose contact would hold it longest; without a contact the last edge.
-    pressure, holds : float
-        Pressure of the fluid, and the highest contact pressure on its way [MPa]; 0 without a contact.
-    meets : str
-        Name of the inlet that the way leads to; empty if to none.
-    """
-
-    inlet: str
-    edge: str
-    pressure: float
-    holds: float
-    meets: str
 
 
 class FluidPressure(Term):
@@ -81,6 +56,13 @@ class FluidPressure(Term):
     traps : bool
         Whether pockets keep the fluid's pressure (``TrappedFluid``), False at first: then it does not stay behind a
         contact when its pressure falls.
+
+    names : array of str, shape (m,)
+        Of the mesh edges, in the order of the outline, once it has been added to a form.
+    paths : list of tuple of int and array
+        The two ways from the inlet: the direction along the outline, 1 or -1, and the mesh edges.
+    beyond : list of str
+        Edge of the outline at which each way ends.
 
     Raises
     ------
@@ -131,11 +113,11 @@ class FluidPressure(Term):
         reach = np.isin(line.names, self.edges)
         self._inlet = inlet = np.isin(line.names, self.inlet)
         m = len(line.names)
-        self._lengths = body.contour.arc_lengths(*line.t.T)
+        self.names, self._lengths = line.names, body.contour.arc_lengths(*line.t.T)
         self._middles = body.base.at(line.t.ravel()).reshape(-1, 2, 2).mean(axis=1)
         self._passed, self._reached = [0, 0], [0, 0]  # edges of each way
         self._drained = [False, False]
-        self._paths, self._beyond = [], []
+        self.paths, self.beyond = [], []
         whole = bool(inlet.all())
         piece = [0 if whole else int(np.flatnonzero(inlet & ~np.roll(inlet, 1))[0])]
         while inlet[(piece[-1] + 1) % m] and len(piece) < m:
@@ -144,12 +126,14 @@ class FluidPressure(Term):
         middle = piece[int(np.searchsorted(ways, 0.5 * ways[-1]))]
         for step in (1, -1):
             path = [middle]
-            while reach[(path[-1] + step) % m] and len(path) <= m and not self._at(line.names[(path[-1] + step) % m]):
+            while (
+                reach[(path[-1] + step) % m] and len(path) <= m and not self.fluid_at(line.names[(path[-1] + step) % m])
+            ):
                 path.append((path[-1] + step) % m)
-            self._paths.append((step, np.array(path)))
-            self._beyond.append(str(line.names[(path[-1] + step) % m]))
+            self.paths.append((step, np.array(path)))
+            self.beyond.append(str(line.names[(path[-1] + step) % m]))
 
-    def _at(self, edge: str) -> FluidPressure | None:
+    def fluid_at(self, edge: str) -> FluidPressure | None:
         """The fluid from another inlet that has this edge."""
         return next((other for other in self.others if edge in other.inlet), None)
 
@@ -159,7 +143,7 @@ class FluidPressure(Term):
         Otherwise the front stays where it was, so that the state remains an equilibrium.
         """
         touching, outside, carried = self._contact()
-        stops = self._stops()
+        stops = self.stops()
         share = np.where(self._inlet, 1.0, 0.0)
         self.leaks = False
         falls = self.pressure.Get() < self._last if self.traps else self.pressure.Get() == 0.0
@@ -168,7 +152,7 @@ class FluidPressure(Term):
             self._passed, self._drained = [0, 0], [False, False]
         elif self._solved:
             self._pass(touching, stops)
-        for k, (step, path) in enumerate(self._paths):
+        for k, (step, path) in enumerate(self.paths):
             stop = np.flatnonzero(stops[k])
             self.leaks |= len(stop) == 0
             stop = stop[stop >= self._passed[k]]
@@ -176,7 +160,7 @@ class FluidPressure(Term):
             dry = np.cumprod(self._inlet[path]).sum()  # edges of the inlet's half
             share[path[reached:dry]] = 0.0
             share[path[:reached]] = 1.0
-            if not len(stop) and self._yields(self._at(self._beyond[k])):
+            if not len(stop) and self._yields(self.fluid_at(self.beyond[k])):
                 share[path] = np.where(self._inlet[path], 1.0, 0.0)
             self._reached[k] = reached if self.pressure.Get() > 0 else 0
             if len(stop) and stop[0] > 0:
@@ -196,14 +180,14 @@ class FluidPressure(Term):
         self._solved = False
         return moved
 
-    def _stops(self) -> list[np.ndarray]:
+    def stops(self) -> list[np.ndarray]:
         """Mesh edges of each way whose contact can stop the fluid.
 
         A surface that touches the inlet's edges and no others of the way, such as a wall beside which the fluid comes
         in, stops it only if no other one does.
         """
         found = []
-        for _, path in self._paths:
+        for _, path in self.paths:
             inside, touching = self._inlet[path], np.zeros(len(path), dtype=bool)
             beyond = touching.copy()
             for contact in self.contacts:
@@ -248,7 +232,7 @@ class FluidPressure(Term):
             profile = contact.profile()
             pressure = profile.pressure[profile.edges].max(axis=1)
             bears[contact.positions] = np.maximum(bears[contact.positions], pressure)
-        for k, (_, path) in enumerate(self._paths):
+        for k, (_, path) in enumerate(self.paths):
             stop = np.flatnonzero(stops[k])
             stop = stop[stop >= self._passed[k]]
             if len(stop) == 0:
@@ -271,7 +255,7 @@ class FluidPressure(Term):
     def passed(self) -> np.ndarray:
         """Reference places up to which the fluid has lifted contacts, one a way; nan: none; shape (2, 2) [mm]."""
         places = np.full((2, 2), np.nan)
-        for k, (_, path) in enumerate(self._paths):
+        for k, (_, path) in enumerate(self.paths):
             if self._passed[k] > 0:
                 places[k] = self._middles[path[self._passed[k]]]
         return places
@@ -281,7 +265,7 @@ class FluidPressure(Term):
         # A stroke begins: nothing of the last one but these places counts, so that a resumed run goes the same way.
         self._reached, self._drained, self._moves = [0, 0], [False, False], 0
         self._last = self.pressure.Get()
-        for k, (_, path) in enumerate(self._paths):
+        for k, (_, path) in enumerate(self.paths):
             known = bool(np.isfinite(places[k]).all())
             apart = np.linalg.norm(self._middles[path] - places[k], axis=1) if known else np.zeros(1)
             self._passed[k] = int(apart.argmin())
@@ -303,52 +287,13 @@ class FluidPressure(Term):
 
     def fronts(self) -> np.ndarray:
         """Outline parameters at which the fluid meets a contact in the present state; none on a path without one."""
-        first = [(step, path[stop][:1]) for (step, path), stop in zip(self._paths, self._stops(), strict=True)]
+        first = [(step, path[stop][:1]) for (step, path), stop in zip(self.paths, self.stops(), strict=True)]
         return np.concatenate([self._body.outline.t[edge, 0 if step == 1 else 1] for step, edge in first])
 
     @property
     def shares(self) -> np.ndarray:
         """Value of chi on each mesh edge, in the order of the outline, shape (m,) [-]."""
         return self.wetted.vec.FV().NumPy()[self._unknown]
-
-    def leak_pressure(self) -> tuple[float, str]:
-        """Fluid pressure that the present contacts can seal [MPa], and the name of the edge at which it leaks first.
-
-        A seal leaks when the fluid's pressure exceeds the contact pressure everywhere along a path (Liu, Wang,
-        Chen & Suo, *Elastic leak of a seal*, Extreme Mech. Lett. 1 (2014) 54). Of the two paths from the inlet, the one
-        with the lower maximum of contact pressure leaks first. The contact pressures are those of the present state; a
-        fluid that presses the part against its contacts, as with an O-ring, increases them.
-        """
-        first = min(self._ways(), key=lambda way: way.holds)
-        return first.holds, first.edge
-
-    def blow_by(self) -> BlowBy | None:
-        """Where no contact holds the fluid in the present state; None if all do.
-
-        That is where the highest contact pressure on its way is below the fluid's, by more than ``ERRS``. A way that
-        ends at a support, or at an inlet with the same pressure or a higher one, is closed.
-        """
-        for way, beyond in zip(self._ways(), self._beyond, strict=True):
-            other = self._at(beyond)
-            closed = beyond in self.held or (other is not None and other.pressure.Get() >= way.pressure)
-            if way.holds < (1 - ERRS) * way.pressure and not closed:
-                return way
-        return None
-
-    def _ways(self) -> list[BlowBy]:
-        """What holds the fluid on each of its two ways."""
-        highest, names = np.zeros(len(self._inlet)), self._body.outline.names
-        for contact in self.contacts:
-            profile = contact.profile()
-            pressure = profile.pressure[profile.edges].max(axis=1)
-            highest[contact.positions] = np.maximum(highest[contact.positions], pressure)
-        found = []
-        for (_, path), beyond, stop in zip(self._paths, self._beyond, self._stops(), strict=True):
-            held = np.where(stop, highest[path], 0.0)
-            at, other = path[held.argmax() if held.any() else -1], self._at(beyond)
-            meets = "" if other is None else other.name
-            found.append(BlowBy(self.name, str(names[at]), self.pressure.Get(), float(highest[at]), meets))
-        return found
 
     def force(self) -> np.ndarray:
         """Resultant of the fluid on the part; shape (2,) [N], or N/mm in plane strain."""

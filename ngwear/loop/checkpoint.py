@@ -44,7 +44,7 @@ def classes(scene: Scene) -> tuple[type, ...]:
     """Classes of the objects in a checkpoint of the scene; modules that the scene does not need are not imported."""
     found: list[type] = list(PLAIN)
     if scene.fluid is not None:
-        from ngwear.effects.fluid_pressure import BlowBy
+        from ngwear.effects.blow_by import BlowBy
 
         found.append(BlowBy)
     if scene.deactivation is not None:

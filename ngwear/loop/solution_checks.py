@@ -150,9 +150,7 @@ def _crushed(stage: Stage) -> Iterator[Finding]:
 
 def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     """A contact that carries less than the fluid's pressure: the fluid would open it."""
-    for fluid in stage.fluids.values():
-        if (blown := fluid.blow_by()) is None:
-            continue
+    for blown in stage.blow_by():
         what = f"stroke '{stroke.name}': the {blown.pressure:.3g} MPa of '{blown.inlet}'"
         if blown.holds > 0:
             sentence = f"would open the contact at '{blown.edge}', which carries {blown.holds:.3g} MPa at most"

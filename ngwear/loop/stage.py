@@ -24,6 +24,7 @@ from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 
 if TYPE_CHECKING:  # modules of effects that the scene does not have are not imported
+    from ngwear.effects.blow_by import BlowBy
     from ngwear.effects.fluid_pressure import FluidPressure
     from ngwear.effects.friction import Friction, FullSliding
     from ngwear.effects.stick_slip import StickSlip
@@ -155,6 +156,22 @@ class Stage:
         for name, fluid in self.fluids.items():
             loads |= dict.fromkeys(fluid.loads, stroke.pressure_at(name))
         return loads
+
+    def leak_pressure(self) -> tuple[float, str] | None:
+        """Pressure that the contacts can seal [MPa], and the edge that leaks first; None if the scene does not ask."""
+        if not self.leaking:
+            return None
+        from ngwear.effects.blow_by import leak_pressure
+
+        return min(leak_pressure(fluid) for fluid in self.leaking)
+
+    def blow_by(self) -> tuple[BlowBy, ...]:
+        """The fluids that no contact holds in the present state."""
+        if not self.fluids:
+            return ()
+        from ngwear.effects.blow_by import blow_by
+
+        return tuple(blown for fluid in self.fluids.values() if (blown := blow_by(fluid)) is not None)
 
     @property
     def leaking(self) -> list[FluidPressure]:

@@ -21,7 +21,7 @@ from ngwear.surfaces import WornProfile
 from ngwear.wear.jump_control import JumpControl
 
 if TYPE_CHECKING:  # modules of effects that a scene does not have are not imported
-    from ngwear.effects.fluid_pressure import BlowBy
+    from ngwear.effects.blow_by import BlowBy
     from ngwear.fields.background_mesh import Background
     from ngwear.loop.memory_over_cycles import CycleMemory
 

@@ -41,7 +41,7 @@ from ngwear.wear.jump_control import JumpControl
 from ngwear.wear.sliding_distance import Strokes
 
 if TYPE_CHECKING:  # modules of effects that a scene does not have are not imported
-    from ngwear.effects.fluid_pressure import BlowBy
+    from ngwear.effects.blow_by import BlowBy
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -394,8 +394,8 @@ class Stepper:
             wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
             counters=state.counters,
             leaks=any(fluid.leaks for fluid in stage.fluids.values()),
-            leak_pressure=min((fluid.leak_pressure() for fluid in stage.leaking), default=None),
-            blow_by=tuple(blown for fluid in stage.fluids.values() if (blown := fluid.blow_by()) is not None),
+            leak_pressure=stage.leak_pressure(),
+            blow_by=stage.blow_by(),
             contour=state.contour,
             ledger=state.ledger.copy(),
             cells=state.cells,

@@ -1,0 +1,77 @@
+"""What the contacts hold of a fluid: the pressure at which it leaks, and whether it blows by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ngwear.effects.fluid_pressure import FluidPressure
+
+# Of the fluid's pressure: how much less counts as blow-by. So exact is the contact pressure of a part that the fluid
+# presses into its groove (geometries/rectangular_ring).
+ERRS = 0.01
+
+
+@dataclass(frozen=True)
+class BlowBy:
+    """A fluid that no contact holds.
+
+    Attributes
+    ----------
+    inlet, edge : str
+        Where it comes from, and the edge whose contact would hold it longest; without a contact the last edge.
+    pressure, holds : float
+        Pressure of the fluid, and the highest contact pressure on its way [MPa]; 0 without a contact.
+    meets : str
+        Name of the inlet that the way leads to; empty if to none.
+    """
+
+    inlet: str
+    edge: str
+    pressure: float
+    holds: float
+    meets: str
+
+
+def leak_pressure(fluid: FluidPressure) -> tuple[float, str]:
+    """Fluid pressure that the present contacts can seal [MPa], and the name of the edge at which it leaks first.
+
+    A seal leaks when the fluid's pressure exceeds the contact pressure everywhere along a path (Liu, Wang, Chen & Suo,
+    *Elastic leak of a seal*, Extreme Mech. Lett. 1 (2014) 54). Of the two paths from the inlet, the one with the lower
+    maximum of contact pressure leaks first. The contact pressures are those of the present state; a fluid that presses
+    the part against its contacts, as with an O-ring, increases them.
+    """
+    first = min(_ways(fluid), key=lambda way: way.holds)
+    return first.holds, first.edge
+
+
+def blow_by(fluid: FluidPressure) -> BlowBy | None:
+    """Where no contact holds the fluid in the present state; None if all do.
+
+    That is where the highest contact pressure on its way is below the fluid's, by more than ``ERRS``. A way that ends
+    at a support, or at an inlet with the same pressure or a higher one, is closed.
+    """
+    for way, beyond in zip(_ways(fluid), fluid.beyond, strict=True):
+        other = fluid.fluid_at(beyond)
+        closed = beyond in fluid.held or (other is not None and other.pressure.Get() >= way.pressure)
+        if way.holds < (1 - ERRS) * way.pressure and not closed:
+            return way
+    return None
+
+
+def _ways(fluid: FluidPressure) -> list[BlowBy]:
+    """What holds the fluid on each of its two ways."""
+    names = fluid.names
+    highest = np.zeros(len(names))
+    for contact in fluid.contacts:
+        profile = contact.profile()
+        pressure = profile.pressure[profile.edges].max(axis=1)
+        highest[contact.positions] = np.maximum(highest[contact.positions], pressure)
+    found = []
+    for (_, path), beyond, stop in zip(fluid.paths, fluid.beyond, fluid.stops(), strict=True):
+        held = np.where(stop, highest[path], 0.0)
+        at, other = path[held.argmax() if held.any() else -1], fluid.fluid_at(beyond)
+        meets = "" if other is None else other.name
+        found.append(BlowBy(fluid.name, str(names[at]), fluid.pressure.Get(), float(highest[at]), meets))
+    return found
