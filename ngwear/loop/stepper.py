@@ -28,10 +28,9 @@ from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unworn_body, warn_if_unstable
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
-from ngwear.loop.section_snapshot import section_snapshot
-from ngwear.loop.solution_checks import findings
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
+from ngwear.loop.stroke_report import stroke_report
 from ngwear.loop.stroke_solve import EMPTIES, empties, recorder, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.boundary import GO_ON
@@ -377,31 +376,5 @@ class Stepper:
 
     def _report(self, state: State, index: int, iterations: int, sliding: Strokes) -> StrokeReport:
         """Report of the stroke's equilibrium, before its wear."""
-        stage = state.stage
-        kept = sliding.repeats == 0 or state.strokes + sliding.repeats in self.scene.kept
-        profiles = {spec.name: stage.contacts[spec.name].profile() for spec in self.scene.followed}
-        forces, worn = stage.forces(), sliding.repeats > 0 or state.ledger.worn > 0
-        return StrokeReport(
-            phase=index,
-            last_stroke=state.strokes,
-            repeats=0,
-            iterations=iterations,
-            contacts=profiles,
-            forces=forces,
-            heats={name: friction.heat(sliding.travel) for name, friction in stage.frictions.items()},
-            margins=stage.margins(),
-            coefficients={name: friction.mean() for name, friction in stage.frictions.items() if friction.varies},
-            wear_rates={c.name: sliding.wear_rate(c.wear_rate) for c in self.scene.contacts if c.wear_rate.varies},
-            counters=state.counters,
-            leaks=any(fluid.leaks for fluid in stage.fluids.values()),
-            leak_pressure=stage.leak_pressure(),
-            blow_by=stage.blow_by(),
-            contour=state.contour,
-            ledger=state.ledger.copy(),
-            cells=state.cells,
-            loaded={} if self._lost_elements is None else self._lost_elements.loaded(stage),
-            section=section_snapshot(stage) if kept else {},
-            turned=stage.problem.turned() if stage.floats else 0.0,
-            trapped=None if stage.trapped is None else float(stage.trapped.pressures.max()),
-            findings=findings(stage, profiles, forces, self.scene.program.cycle[index], worn=worn),
-        )
+        loaded = {} if self._lost_elements is None else self._lost_elements.loaded(state.stage)
+        return stroke_report(self.scene, state, index, sliding, iterations=iterations, loaded=loaded)
