@@ -8,6 +8,9 @@ from collections.abc import Callable
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from ngwear.effects.base import DISPLACEMENT
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, SceneError
 from ngwear.geometry.body import Body
@@ -15,6 +18,7 @@ from ngwear.loop.refinement import mounting_field, required_sizes, unworn_outlin
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.materials import PronySeries
+from ngwear.scene.boundary import FLUID
 from ngwear.scene.scene import Scene
 from ngwear.wear.archard import critical_distance
 
@@ -99,6 +103,24 @@ def refuse_idle_contacts(state: State) -> None:
                 spec.surface,
                 "touches its edges in no stroke, so that nothing wears; move it closer or give a force",
             )
+
+
+def refuse_closed_inlets(stage: Stage) -> None:
+    """SceneError if an inlet lies in a pocket that a contact of the mounted part closes: no fluid can come in there."""
+    if not stage.fluids:
+        return
+    from ngwear.effects.pockets import contact_pressures, pockets
+
+    names, contacts = stage.body.outline.names, list(stage.contacts.values())
+    opened = contact_pressures(stage.body, contacts).max(axis=0) == 0
+    for pocket in pockets(stage.body, stage.problem.fields[DISPLACEMENT], contacts):
+        inside = np.isin(np.arange(len(names)), pocket.edges)
+        for name, fluid in stage.fluids.items():
+            comes_in = np.isin(names, fluid.inlet) & opened
+            if comes_in.any() and not (comes_in & ~inside).any():
+                place = "fluid.inlet" if name == FLUID else f"fluid.inlet.{name}"
+                remedy = f"lies in a pocket that the contact '{pocket.contact}' closes on both sides: no fluid comes in"
+                raise SceneError(place, list(fluid.inlet), f"{remedy} there; name edges on the sealed side")
 
 
 def give_memory(state: State, scene: Scene, arms: PronySeries) -> None:

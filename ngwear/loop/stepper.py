@@ -25,7 +25,14 @@ from ngwear.loop.finer_mesh import (
     unresolved,
 )
 from ngwear.loop.law_changes import steady_cycles
-from ngwear.loop.mounting import give_memory, mount, refuse_idle_contacts, unworn_body, warn_if_unstable
+from ngwear.loop.mounting import (
+    give_memory,
+    mount,
+    refuse_closed_inlets,
+    refuse_idle_contacts,
+    unworn_body,
+    warn_if_unstable,
+)
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
 from ngwear.loop.stage import Stage
@@ -127,6 +134,7 @@ class Stepper:
         state.phases = []
         state.stage.leave_fluid(np.empty((0, 3)))
         state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
+        refuse_closed_inlets(state.stage)
         if self._lost_elements is not None:
             self._lost_elements.begin(state)
         for i, stroke in enumerate(cycle):

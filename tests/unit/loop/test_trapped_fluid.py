@@ -7,6 +7,7 @@ import pytest
 
 import ngwear as nw
 from ngwear.effects.fluid_pressure import LESS
+from ngwear.effects.pockets import pockets
 from ngwear.geometry.outline import Outline
 from ngwear.loop.stepper import Stepper
 from ngwear.surfaces import Plane
@@ -43,15 +44,21 @@ def trapped():
     return Stepper(arch("trapped")).start()
 
 
+def found(state):
+    """The pockets, in the state at the end of the last stroke."""
+    stage = state.stage
+    return pockets(stage.body, stage.problem.fields["displacement"], list(stage.contacts.values()))
+
+
 def test_a_pocket_keeps_what_its_contacts_carry(trapped):
     """The fluid lifts the lip; when its pressure is gone, the pocket presses the lip down."""
     full, after = trapped.reports
     assert full.trapped == 0.0  # the fluid itself is there
     assert full.forces["fluid"][1] > 1.9 * HIGH  # on lip and roof
     assert after.trapped == pytest.approx(HIGH)
-    ((pocket, holds),) = trapped.stage.trapped._pockets()
-    assert holds > HIGH
-    assert {"inside", "roof", "flank"} <= set(trapped.stage.body.outline.names[pocket])
+    (pocket,) = found(trapped)
+    assert pocket.holds > HIGH
+    assert {"inside", "roof", "flank"} <= set(trapped.stage.body.outline.names[pocket.edges])
 
 
 def test_its_force_is_its_pressure_on_its_width(trapped):
@@ -63,7 +70,7 @@ def test_its_force_is_its_pressure_on_its_width(trapped):
 def test_what_they_do_not_carry_leaks_out():
     state = Stepper(arch("trapped")).start()
     term, given = state.stage.trapped, state.phases[0].left.copy()
-    ((_, holds),) = term._pockets()
+    holds = found(state)[0].holds
     given[:, 2] = 4 * holds
     term.leave(given)
     term.prepare()  # as if solved with it
@@ -97,3 +104,24 @@ def test_a_pressure_that_falls_leaves_the_pocket_at_the_higher_one():
 def test_a_wrong_choice_is_refused():
     with pytest.raises(nw.SceneError, match=r"fluid.pockets = 'vacuum'.*'ambient' or 'trapped'"):
         arch("vacuum")
+
+
+def test_an_inlet_in_a_closed_pocket_is_refused():
+    scene = arch("ambient")
+    scene = replace(scene, fluid=replace(scene.fluid, inlet=["roof"]))
+    with pytest.raises(nw.SceneError, match=r"fluid.inlet = \['roof'\].*a pocket that the contact 'plate' closes"):
+        Stepper(scene).start()
+
+
+def test_the_surroundings_are_no_pocket():
+    """Fluid all around a block on a plate: both ends of its contact are on the same surface."""
+    scene = arch("trapped")
+    outline = Outline.rectangle((0.0, 3.0), (0.0, 2.0))
+    around = replace(
+        scene,
+        part=replace(scene.part, outline=outline),
+        contacts=[replace(scene.contacts[0], edges=["bottom", "left", "right"])],
+        fluid=nw.Fluid(edges=["left", "bottom", "right"], inlet=["left"], pockets="trapped"),
+    )
+    state = Stepper(around).start()
+    assert found(state) == []
