@@ -41,7 +41,7 @@ class TrappedFluid(Term):
     ) -> None:
         super().__init__()
         self.edges, self.fluids, self.contacts = tuple(edges), tuple(fluids), tuple(contacts)
-        self._solved = False
+        self._solved, self._begins = False, True
 
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
         body = unknowns.section
@@ -73,6 +73,7 @@ class TrappedFluid(Term):
 
     def leave(self, places: Array) -> None:
         """Begin a stroke with what ``leaves`` has given at the end of the last one, also on another mesh."""
+        self._begins = True  # nothing of the last stroke but these places counts: a resumed run goes the same way
         self.left = np.zeros(len(self._lengths))
         if len(places):
             apart, nearest = cKDTree(places[:, :2]).query(self._middles)
@@ -83,7 +84,7 @@ class TrappedFluid(Term):
         return np.max([fluid.pressure.Get() * fluid.shares for fluid in self.fluids], axis=0)
 
     def prepare(self) -> None:
-        self._solved = True
+        self._solved, self._begins = True, False
 
     def refresh(self) -> bool:
         q, carried = np.zeros(len(self._lengths)), 0.0
@@ -93,7 +94,7 @@ class TrappedFluid(Term):
             if wet[edges].any() or not self._wettable[edges].all():
                 continue
             q[edges] = self.left[edges].max()
-            if self.pressures[edges].any():  # else the contacts do not feel it yet
+            if self.pressures[edges].any() and not self._begins:  # else the contacts do not feel it yet
                 q[edges] = np.minimum(q[edges], pocket.holds / (1 - LESS))
             if self._solved:
                 self.left[edges] = q[edges]
@@ -104,7 +105,7 @@ class TrappedFluid(Term):
         self._solved = False
         for contact in self.contacts:
             carried += float(self._lengths[contact.positions] @ contact.end_pressures().mean(axis=1))
-        if self._lengths @ np.abs(q - self.pressures) <= STAYS * carried:
+        if self._lengths @ np.abs(q - self.pressures) <= STAYS * carried and not self._begins:
             return False
         self.field.vec.FV().NumPy()[self._unknown] = q
         return True

@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import REMEMBERS
+from valve import valve
 
 from ngwear.cli import BAD_INPUT, main
 from ngwear.equilibrium.linear import has_pardiso
@@ -36,6 +37,19 @@ def tiring():
     return replace(base, program=replace(base.program, strokes=4))
 
 
+def two_pressures():
+    """A ring with room to move that is never without fluid pressure."""
+    ring = read_scene("geometries/o_ring/scene.toml")
+    cycle = [replace(s, pressure=p) for s, p in zip(ring.program.cycle, (1.0, 3.0), strict=True)]
+    return replace(ring, program=replace(ring.program, cycle=cycle, strokes=2000), accuracy=Accuracy(across=4.0))
+
+
+def pockets():
+    """A plate wears a lip before a pocket that keeps the fluid's pressure."""
+    lip = valve("trapped", strokes=12)
+    return replace(lip, contacts=[replace(lip.contacts[0], specific_wear_rate=1e-4, friction=0.05)])
+
+
 def across(scene):
     return replace(scene, accuracy=Accuracy(across=4.0))
 
@@ -48,6 +62,8 @@ def across(scene):
         "elements across",
         "memory",
         "torn",
+        "pockets",
+        pytest.param("two pressures", marks=pytest.mark.slow),
         pytest.param("fatigue", marks=pytest.mark.slow),
     ]
 )
@@ -62,6 +78,8 @@ def scene(request, tmp_path, write_sheet):
         "elements across": lambda: across(sheet()),
         "memory": lambda: sheet(*REMEMBERS),
         "torn": torn_scene,
+        "pockets": pockets,
+        "two pressures": two_pressures,
         "fatigue": tiring,
     }[request.param]()
 

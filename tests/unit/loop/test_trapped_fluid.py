@@ -4,44 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from valve import HIGH, valve
 
 import ngwear as nw
 from ngwear.effects.fluid_pressure import LESS
 from ngwear.effects.pockets import pockets
 from ngwear.geometry.outline import Outline
 from ngwear.loop.stepper import Stepper
-from ngwear.surfaces import Plane
-
-POINTS = np.array(
-    [[0, 0.9], [0.85, 0.06], [1, 0.1], [0.45, 0.9], [2, 0.9], [2, -0.03], [3, -0.03], [3, 2], [0, 2]]
-)  # a lip that leans into the pocket, so that the fluid from the left lifts it, and a foot that holds the fluid
-NAMES = ("lip", "tip", "inside", "roof", "flank", "foot", "right", "top", "left")
-WET = NAMES[:6]
-HIGH = 0.05  # MPa
-
-
-def arch(pockets, pressures=(HIGH, 0.0)):
-    """A block with a lip and a foot on a plate, held at its top; the fluid comes from the left."""
-    outline = Outline(POINTS, NAMES, np.ones(len(POINTS), dtype=bool))
-    plate = nw.Contact("plate", edges=WET, surface=Plane(point=(0.0, 0.1), normal_vector=(0.0, 1.0)))
-    return nw.Scene(
-        "arch",
-        nw.Part(outline, material=nw.NeoHooke(shear=1.0, bulk_modulus=1000.0)),
-        contacts=[plate],
-        supports=[nw.Support(edges=["top"])],
-        fluid=nw.Fluid(edges=["left", *WET], inlet=["left"], pockets=pockets),
-        program=nw.Program(
-            strokes=len(pressures),
-            cycle=[nw.Stroke(f"{i}: {p} MPa", travel=1.0, pressure=p) for i, p in enumerate(pressures)],
-        ),
-        accuracy=nw.Accuracy(patch=0.05, coarse=0.2, mounting=0.05),
-        axisymmetric=False,
-    )
 
 
 @pytest.fixture(scope="module")
 def trapped():
-    return Stepper(arch("trapped")).start()
+    return Stepper(valve("trapped")).start()
 
 
 def found(state):
@@ -68,7 +42,7 @@ def test_its_force_is_its_pressure_on_its_width(trapped):
 
 
 def test_what_they_do_not_carry_leaks_out():
-    state = Stepper(arch("trapped")).start()
+    state = Stepper(valve("trapped")).start()
     term, given = state.stage.trapped, state.phases[0].left.copy()
     holds = found(state)[0].holds
     given[:, 2] = 4 * holds
@@ -79,35 +53,35 @@ def test_what_they_do_not_carry_leaks_out():
 
 
 def test_ambient_pockets_keep_nothing():
-    state = Stepper(arch("ambient")).start()
+    state = Stepper(valve("ambient")).start()
     assert state.reports[1].trapped is None
     assert "trapped fluid" not in state.reports[1].forces
 
 
 def test_what_was_never_wetted_holds_nothing():
-    state = Stepper(arch("trapped", pressures=(0.0, 0.0))).start()
+    state = Stepper(valve("trapped", pressures=(0.0, 0.0))).start()
     assert [report.trapped for report in state.reports] == [0.0, 0.0]
 
 
 def test_it_goes_on_with_the_strokes_and_on_new_meshes(trapped):
     """As much after a run with wear, remeshes and cycles as in the first one."""
-    result = nw.run(replace(arch("trapped"), program=replace(arch("trapped").program, strokes=20)), progress=False)
+    result = nw.run(replace(valve("trapped"), program=replace(valve("trapped").program, strokes=20)), progress=False)
     column = [row["pressure trapped in pockets [MPa]"] for row in result.records.rows]
     assert max(column) == pytest.approx(trapped.reports[1].trapped, rel=0.05)
 
 
 def test_a_pressure_that_falls_leaves_the_pocket_at_the_higher_one():
-    state = Stepper(arch("trapped", pressures=(HIGH, 0.4 * HIGH))).start()
+    state = Stepper(valve("trapped", pressures=(HIGH, 0.4 * HIGH))).start()
     assert state.reports[1].trapped == pytest.approx(HIGH)
 
 
 def test_a_wrong_choice_is_refused():
     with pytest.raises(nw.SceneError, match=r"fluid.pockets = 'vacuum'.*'ambient' or 'trapped'"):
-        arch("vacuum")
+        valve("vacuum")
 
 
 def test_an_inlet_in_a_closed_pocket_is_refused():
-    scene = arch("ambient")
+    scene = valve("ambient")
     scene = replace(scene, fluid=replace(scene.fluid, inlet=["roof"]))
     with pytest.raises(nw.SceneError, match=r"fluid.inlet = \['roof'\].*a pocket that the contact 'plate' closes"):
         Stepper(scene).start()
@@ -115,7 +89,7 @@ def test_an_inlet_in_a_closed_pocket_is_refused():
 
 def test_the_surroundings_are_no_pocket():
     """Fluid all around a block on a plate: both ends of its contact are on the same surface."""
-    scene = arch("trapped")
+    scene = valve("trapped")
     outline = Outline.rectangle((0.0, 3.0), (0.0, 2.0))
     around = replace(
         scene,
