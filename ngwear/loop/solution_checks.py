@@ -1,4 +1,4 @@
-"""Look at an accepted solve: overlap, a pressure that alternates, forces out of balance, crushed elements, blow-by.
+"""Look at an accepted solve: overlap, zigzag pressures, forces out of balance, crushed elements, folds, blow-by.
 
 Every stroke that is recorded is looked at. A finding is a sentence with the place and the value; the run keeps the
 worst of each kind and place, and lists them as warnings.
@@ -59,7 +59,13 @@ def findings(
 
     ``worn``: whether the part has worn, or wears in this solve.
     """
-    found = [*_overlaps(stage, worn=worn), *_imbalance(stage, forces), *_crushed(stage), *_blow_by(stage, stroke)]
+    found = [
+        *_overlaps(stage, worn=worn),
+        *_crossings(stage),
+        *_imbalance(stage, forces),
+        *_crushed(stage),
+        *_blow_by(stage, stroke),
+    ]
     for name, profile in profiles.items():
         found += _zigzag(name, profile)
     return tuple(found)
@@ -67,10 +73,7 @@ def findings(
 
 def _overlaps(stage: Stage, *, worn: bool) -> Iterator[Finding]:
     """Nodes of the whole outline that lie inside a surface, whether its contact lists their edges or not."""
-    line, nodes, u = stage.body.outline, ElementNodes(stage.body.mesh), stage.problem.fields[DISPLACEMENT]
-    values = nodes.values(ng.CF((ng.x, ng.y, u[0], u[1])))
-    values = np.stack([values[line.vertices[:, 0]], values[nodes.middle(line.vertices)]])  # start and middle of an edge
-    before, place = values[..., :2], values[..., :2] + values[..., 2:]
+    line, (before, place) = stage.body.outline, _deformed(stage)
     length = np.linalg.norm(np.roll(place[0], -1, axis=0) - place[0], axis=1)
     for name, contact in stage.contacts.items():
         own = np.isin(line.names, contact.edges)
@@ -88,6 +91,28 @@ def _overlaps(stage: Stage, *, worn: bool) -> Iterator[Finding]:
                 coarse = (depth > 0) & (advice == COARSE)
                 places = np.column_stack([before[coarse], edges[coarse]])
                 yield Finding(f"overlap {name} {edge}", deep, f"{where}{advice}", places)
+
+
+def _crossings(stage: Stage) -> Iterator[Finding]:
+    """A deformed outline that crosses itself: the part has no contact with itself."""
+    from shapely import Polygon, is_valid, is_valid_reason
+
+    place = _deformed(stage)[1]
+    outline = Polygon(place.transpose(1, 0, 2).reshape(-1, 2))
+    if not is_valid(outline):
+        where = ", ".join(f"{float(x):.4g}" for x in is_valid_reason(outline).partition("[")[2].rstrip("]").split())
+        sentence = (
+            f"the outline crosses itself at ({where}): the part touches itself there, which the run does not compute"
+        )
+        yield Finding("crossing", 1.0, f"{sentence}; the results are those of a part that goes through itself")
+
+
+def _deformed(stage: Stage) -> tuple[Array, Array]:
+    """Places of the start and the middle of each mesh edge before and after the deformation, shape (2, m, 2) [mm]."""
+    line, nodes, u = stage.body.outline, ElementNodes(stage.body.mesh), stage.problem.fields[DISPLACEMENT]
+    values = nodes.values(ng.CF((ng.x, ng.y, u[0], u[1])))
+    values = np.stack([values[line.vertices[:, 0]], values[nodes.middle(line.vertices)]])
+    return values[..., :2], values[..., :2] + values[..., 2:]
 
 
 def _gap(contact: OutlineContact, place: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import ngsolve as ng
 import numpy as np
 import pytest
 
@@ -140,3 +141,13 @@ def test_a_part_that_wears_may_end_a_solve_inside_the_surface_that_wears_it(scen
     problem.state.vec.FV().NumPy()[problem.part("displacement")] *= 0.9  # less than the plate pushes
     assert any("overlap" in key for key in found(stage, state.reports[-1]))
     assert not any("overlap" in key for key in found(stage, state.reports[-1], worn=True))
+
+
+def test_an_outline_that_crosses_itself_is_found(scene):
+    """The sides of a thin block, moved through each other."""
+    state = Stepper(scene).start()
+    stage = state.stage
+    u = stage.problem.fields["displacement"]
+    u.Set(ng.CF((-2.4 * (ng.x - 1.0) * ng.y, 0.0)))  # the top is turned over
+    crossing = found(stage, state.reports[-1])["crossing"]
+    assert "crosses itself at (1, 0.4167): the part touches itself there" in crossing.sentence
