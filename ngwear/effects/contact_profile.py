@@ -14,6 +14,9 @@ from ngwear.geometry.outline import Outline
 Array = NDArray[np.float64]
 
 
+LEAST_WIDTH = 0.5  # of a mesh edge: a contact within it has no width that its nodes could tell
+
+
 @dataclass(frozen=True)
 class Zone:
     """One connected piece of the contact.
@@ -207,7 +210,9 @@ class ContactProfile:
     def _zone(self, a: int, b: int) -> Zone:
         (start, before), (end, beyond) = self._edge(a, -1), self._edge(b - 1, 1)
         between = np.linalg.norm(np.diff(self.place[a:b], axis=0), axis=1).sum()
-        width = max(float(between + before + beyond), 0.0)
+        beside = np.linalg.norm(np.diff(self.place[max(a - 1, 0) : b + 1], axis=0), axis=1)
+        least = LEAST_WIDTH * float(beside.min(initial=np.inf)) if len(beside) else 0.0
+        width = max(float(between + before + beyond), least)
         return Zone(start, end, float(self.pressure[a:b].max()), width, np.arange(a, b))
 
     def _edge(self, node: int, step: int) -> tuple[Array, float]:

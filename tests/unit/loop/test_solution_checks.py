@@ -151,3 +151,13 @@ def test_an_outline_that_crosses_itself_is_found(scene):
     u.Set(ng.CF((-2.4 * (ng.x - 1.0) * ng.y, 0.0)))  # the top is turned over
     crossing = found(stage, state.reports[-1])["crossing"]
     assert "crosses itself at (1, 0.4167): the part touches itself there" in crossing.sentence
+
+
+def test_a_contact_within_a_mesh_edge_has_a_width(solved):
+    """Its ends are looked for inside the outermost nodes, which are open: there is no less than half an edge."""
+    profile = solved[1].contacts["plate"]
+    one = np.arange(len(profile.t)) == len(profile.t) // 2
+    thin = replace(profile, pressure=1.0 * one, gap=1.0 - 0.5 * one + 0.01 * np.abs(np.arange(len(one)) - one.argmax()))
+    (zone,) = thin.zones()
+    edges = np.linalg.norm(np.diff(profile.place, axis=0), axis=1)
+    assert zone.width >= 0.5 * edges.min()
