@@ -24,12 +24,13 @@ LESS = 0.05
 class FluidPressure(Term):
     """Follower traction ``-chi p n`` on the wetted part of named edges: the fluid from one inlet.
 
-    chi is 1 from the middle of the inlet edges, in both directions along the outline, up to the first mesh edge in
-    contact, and 0 beyond that one; on it, chi is the share of its length outside the contact (``free_of_contact``).
-    Treating such an edge as dry would move the front by half an edge on average; with coarse edges the load would
-    change by some per cent. A contact that carries less than the fluid's pressure (by more than ``LESS``) is lifted off
-    its surface: the fluid passes it, and stays behind it until its pressure is zero, also if the contact closes again.
-    A fluid that no contact holds ends at the highest contact pressure.
+    chi is 1 from the middle of the inlet edges (where a surface touches that: of their longest piece without contact),
+    in both directions along the outline, up to the first mesh edge in contact, and 0 beyond that one; on it, chi is the
+    share of its length outside the contact (``free_of_contact``). Treating such an edge as dry would move the front by
+    half an edge on average; with coarse edges the load would change by some per cent. A contact that carries less than
+    the fluid's pressure (by more than ``LESS``) is lifted off its surface: the fluid passes it, and stays behind it
+    until its pressure is zero, also if the contact closes again. A fluid that no contact holds ends at the highest
+    contact pressure.
 
     chi is fixed in a solve and updated after it, until the change of load is below ``STAYS``; a front that swings
     between two edges comes to rest between them. If the fluid reaches the end of the named edges without a contact,
@@ -110,28 +111,40 @@ class FluidPressure(Term):
     def _order_path(self, body: MeshedSection) -> None:
         """Order the mesh edges that the fluid may reach outwards from the inlet's middle, once in each direction."""
         line = body.outline
-        reach = np.isin(line.names, self.edges)
         self._inlet = inlet = np.isin(line.names, self.inlet)
         m = len(line.names)
         self.names, self._lengths = line.names, body.contour.arc_lengths(*line.t.T)
         self._middles = body.base.at(line.t.ravel()).reshape(-1, 2, 2).mean(axis=1)
         self._passed, self._reached = [0, 0], [0, 0]  # edges of each way
         self._drained = [False, False]
-        self.paths, self.beyond = [], []
         whole = bool(inlet.all())
         piece = [0 if whole else int(np.flatnonzero(inlet & ~np.roll(inlet, 1))[0])]
         while inlet[(piece[-1] + 1) % m] and len(piece) < m:
             piece.append((piece[-1] + 1) % m)
-        ways = np.cumsum(self._lengths[piece])
-        middle = piece[int(np.searchsorted(ways, 0.5 * ways[-1]))]
+        self._piece = np.array(piece)
+        self._begin_in(self._piece)
+
+    def _begin_in(self, piece: np.ndarray) -> None:
+        """Begin both ways in the middle of a piece of the inlet."""
+        ways, names, m = np.cumsum(self._lengths[piece]), self.names, len(self.names)
+        reach = np.isin(names, self.edges)
+        self.paths, self.beyond = [], []
         for step in (1, -1):
-            path = [middle]
-            while (
-                reach[(path[-1] + step) % m] and len(path) <= m and not self.fluid_at(line.names[(path[-1] + step) % m])
-            ):
-                path.append((path[-1] + step) % m)
+            path = [int(piece[np.searchsorted(ways, 0.5 * ways[-1])])]
+            while reach[(after := (path[-1] + step) % m)] and len(path) <= m and not self.fluid_at(names[after]):
+                path.append(after)
             self.paths.append((step, np.array(path)))
-            self.beyond.append(str(line.names[(path[-1] + step) % m]))
+            self.beyond.append(str(names[after]))
+
+    def _begin_in_the_open(self, touching: np.ndarray) -> None:
+        """Begin both ways in the longest piece of the inlet without contact, if where they begin is in contact."""
+        opened = ~touching[self._piece]
+        if opened.all() or not opened.any() or not touching[self.paths[0][1][0]]:
+            return
+        pieces = np.split(self._piece, np.flatnonzero(np.diff(opened)) + 1)
+        places, last = self.passed, self._last
+        self._begin_in(max((p for p in pieces if not touching[p[0]]), key=lambda p: float(self._lengths[p].sum())))
+        self.passed, self._last = places, last
 
     def fluid_at(self, edge: str) -> FluidPressure | None:
         """The fluid from another inlet that has this edge."""
@@ -143,6 +156,7 @@ class FluidPressure(Term):
         Otherwise the front stays where it was, so that the state remains an equilibrium.
         """
         touching, outside, carried = self._contact()
+        self._begin_in_the_open(touching)
         stops = self.stops()
         share = np.where(self._inlet, 1.0, 0.0)
         self.leaks = False

@@ -23,6 +23,7 @@ from ngwear.scene.scene import Scene
 from ngwear.wear.archard import critical_distance
 
 if TYPE_CHECKING:
+    from ngwear.effects.fluid_pressure import FluidPressure
     from ngwear.geometry.element_body import ElementBody
 
 log = logging.getLogger(__name__)
@@ -105,22 +106,34 @@ def refuse_idle_contacts(state: State) -> None:
             )
 
 
-def refuse_closed_inlets(stage: Stage) -> None:
-    """SceneError if an inlet lies in a pocket that a contact of the mounted part closes: no fluid can come in there."""
-    if not stage.fluids:
-        return
+def refuse_closed_inlets(state: State) -> None:
+    """SceneError if an inlet lies, in each stroke with pressure, in a pocket that a contact closes."""
+    stage, cycle = state.stage, state.stage.scene.program.cycle
+    vector = stage.problem.state.vec.FV().NumPy()
+    keep = vector.copy()
+    for name, fluid in stage.fluids.items():
+        closing: list[str | None] = []
+        for stroke, phase in zip(cycle, state.phases, strict=True):
+            if stroke.pressure_at(name) > 0:
+                vector[:] = phase.vector
+                closing.append(_closing(stage, fluid))
+        vector[:] = keep
+        if closing and all(closing):
+            place = "fluid.inlet" if name == FLUID else f"fluid.inlet.{name}"
+            remedy = f"lies in a pocket that the contact '{closing[0]}' closes on both sides: no fluid comes in there"
+            raise SceneError(place, list(fluid.inlet), f"{remedy}; name edges on the sealed side")
+
+
+def _closing(stage: Stage, fluid: FluidPressure) -> str | None:
+    """Name of the contact that closes a pocket around all open edges of the fluid's inlet in the present state."""
     from ngwear.effects.pockets import contact_pressures, pockets
 
     names, contacts = stage.body.outline.names, list(stage.contacts.values())
-    opened = contact_pressures(stage.body, contacts).max(axis=0) == 0
+    comes_in = np.isin(names, fluid.inlet) & (contact_pressures(stage.body, contacts).max(axis=0) == 0)
     for pocket in pockets(stage.body, stage.problem.fields[DISPLACEMENT], contacts):
-        inside = np.isin(np.arange(len(names)), pocket.edges)
-        for name, fluid in stage.fluids.items():
-            comes_in = np.isin(names, fluid.inlet) & opened
-            if comes_in.any() and not (comes_in & ~inside).any():
-                place = "fluid.inlet" if name == FLUID else f"fluid.inlet.{name}"
-                remedy = f"lies in a pocket that the contact '{pocket.contact}' closes on both sides: no fluid comes in"
-                raise SceneError(place, list(fluid.inlet), f"{remedy} there; name edges on the sealed side")
+        if comes_in.any() and not comes_in[np.isin(np.arange(len(names)), pocket.edges, invert=True)].any():
+            return pocket.contact
+    return None
 
 
 def give_memory(state: State, scene: Scene, arms: PronySeries) -> None:

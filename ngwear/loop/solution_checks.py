@@ -175,6 +175,14 @@ def _crushed(stage: Stage) -> Iterator[Finding]:
 
 def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     """A contact that carries less than the fluid's pressure: the fluid would open it."""
+    for name, fluid in stage.fluids.items():
+        pressure = fluid.pressure.Get()
+        if pressure > 0 and not fluid.shares.any():
+            sentence = (
+                f"stroke '{stroke.name}': surfaces touch the whole inlet of '{name}', so that its {pressure:.3g} MPa "
+            )
+            sentence += "act nowhere; name edges on the sealed side in fluid.inlet"
+            yield Finding(f"inlet {stroke.name} {name}", pressure, sentence)
     for blown in stage.blow_by():
         what = f"stroke '{stroke.name}': the {blown.pressure:.3g} MPa of '{blown.inlet}'"
         if blown.holds > 0:

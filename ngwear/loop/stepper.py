@@ -118,6 +118,7 @@ class Stepper:
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         self._first_cycle(state, self.on_mount)
         refuse_idle_contacts(state)
+        refuse_closed_inlets(state)
         if scene.deactivation is None:
             self._refine(state)
         else:
@@ -134,7 +135,6 @@ class Stepper:
         state.phases = []
         state.stage.leave_fluid(np.empty((0, 3)))
         state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
-        refuse_closed_inlets(state.stage)
         if self._lost_elements is not None:
             self._lost_elements.begin(state)
         for i, stroke in enumerate(cycle):

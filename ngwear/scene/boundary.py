@@ -21,10 +21,10 @@ class Fluid:
     edges : sequence of str
         Edges that a fluid may wet; they form one connected piece.
     inlet : sequence of str, or mapping of str to sequence of str
-        Edges where the fluid comes in: from their middle it reaches the first points in contact, in both directions. A
-        surface that touches these edges alone, such as a wall beside the inlet, does not stop it. Several inlets, such
-        as the two sides of a seal, have names, each with its edges; ``Stroke.pressure`` then gives the pressure of
-        each.
+        Edges where the fluid comes in: from their middle, or that of their longest piece without contact, it reaches
+        the first points in contact, in both directions. A surface that touches these edges alone, such as a wall beside
+        the inlet, does not stop it. Several inlets, such as the two sides of a seal, have names, each with its edges;
+        ``Stroke.pressure`` then gives the pressure of each.
     blow_by : str
         What a run does where no contact holds the fluid: "go on" (default; the results are then for a seal that does
         not open) or "end".

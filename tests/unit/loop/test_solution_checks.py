@@ -161,3 +161,13 @@ def test_a_contact_within_a_mesh_edge_has_a_width(solved):
     (zone,) = thin.zones()
     edges = np.linalg.norm(np.diff(profile.place, axis=0), axis=1)
     assert zone.width >= 0.5 * edges.min()
+
+
+def test_an_inlet_that_surfaces_cover_is_found(scene):
+    stroke = replace(scene.program.cycle[0], pressure=0.1)
+    fluid = nw.Fluid(edges=["left", "top"], inlet=["left"])
+    state = Stepper(replace(scene, fluid=fluid, program=replace(scene.program, cycle=[stroke]))).start()
+    assert not [key for key in found(state.stage, state.reports[-1]) if key.startswith("inlet")]
+    state.stage.fluids["fluid"].wetted.vec[:] = 0.0  # as if a surface touched all of it
+    (finding,) = [f for key, f in found(state.stage, state.reports[-1]).items() if key.startswith("inlet")]
+    assert "surfaces touch the whole inlet of 'fluid', so that its 0.1 MPa act nowhere" in finding.sentence
