@@ -121,9 +121,6 @@ class Term(abc.ABC):
         """After a solve, update the quantities that were fixed in it; True if another solve is necessary."""
         return False
 
-    def move_along(self) -> None:  # noqa: B027 - most terms fix nothing
-        """After a step of a part that moves over to another equilibrium, update what is fixed in a solve."""
-
     def commit(self, strain: Array) -> None:  # noqa: B027 - most terms have no memory
         """Update the history at the end of an accepted step; ``strain`` is that of the material points, if any."""
 

@@ -230,11 +230,6 @@ class FluidPressure(Term):
     def prepare(self) -> None:
         self._solved = True
 
-    def move_along(self) -> None:
-        self._solved = True
-        self.refresh()
-        self._solved = True
-
     def _pass(self, touching: np.ndarray, stops: list[np.ndarray]) -> None:
         """Let the fluid into contacts that it lifts: the next edges of ``_passed`` are those that hold it.
 

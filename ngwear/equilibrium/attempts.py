@@ -132,8 +132,6 @@ def _move_over(problem: Problem, options: NewtonOptions) -> Report:
                 continue
             if strength == 0.0:
                 break
-            for term in problem.terms:
-                term.move_along()
             moved = _largest(problem.state.vec, before, place) / problem.body.size
             if strength < LOOSE or (strength < NEARLY_LOOSE and moved < STANDS):
                 strength = 0.0
