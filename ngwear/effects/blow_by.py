@@ -65,9 +65,7 @@ def _ways(fluid: FluidPressure) -> list[BlowBy]:
     names = fluid.names
     highest = np.zeros(len(names))
     for contact in fluid.contacts:
-        profile = contact.profile()
-        pressure = profile.pressure[profile.edges].max(axis=1)
-        highest[contact.positions] = np.maximum(highest[contact.positions], pressure)
+        highest[contact.positions] = np.maximum(highest[contact.positions], contact.edge_peaks())
     found = []
     for (_, path), beyond, stop in zip(fluid.paths, fluid.beyond, fluid.stops(), strict=True):
         held = np.where(stop, highest[path], 0.0)

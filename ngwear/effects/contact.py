@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ngwear.effects.base import DISPLACEMENT, Unknowns
 from ngwear.effects.contact_profile import ContactProfile, EdgeNodes, nodal_pressure
 from ngwear.effects.unilateral import UnilateralContact
+from ngwear.fields.displacements import at_vertices
 from ngwear.geometry.meshed import Meshed
 from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import Outline
@@ -129,7 +130,7 @@ class OutlineContact(UnilateralContact):
         The gap is a distance: no point of an edge is nearer to the surface than its nearer end less the edge's length.
         """
         displacement = self._state[DISPLACEMENT].vec.FV().NumPy()[self._end_unknowns]
-        place = self._ends + displacement - np.reshape(self._moved(), (2, 1, 1))
+        place = self._ends + displacement - np.reshape(self.stands(), (2, 1, 1))
         lengths = np.hypot(*(place[:, :, 1] - place[:, :, 0]))
         rounded = 0.0 if self.rounding is None else self.rounding.relative
         reach = (1 + rounded * self.softness.Get()) * lengths + rounded * self.modulus * self.compliance.Get()
@@ -144,12 +145,9 @@ class OutlineContact(UnilateralContact):
     @cached_property
     def _end_unknowns(self) -> NDArray[np.intp]:
         """Unknowns of the displacement at both ends of each mesh edge, which are mesh vertices; shape (2, m, 2)."""
-        parts = self._state[DISPLACEMENT].space.components
-        first = np.cumsum([0, *(part.ndof for part in parts[:-1])])
-        return first[:, None, None] + self.section.outline.vertices[self.positions]
+        return at_vertices(self._state[DISPLACEMENT].space, self.section.outline.vertices[self.positions])
 
-    def _moved(self) -> tuple[float, float]:
-        """Displacement of the rigid surface in the present state [mm]."""
+    def stands(self) -> tuple[float, float]:
         travel = self._state[self.travel_name].vec[0] if self.force_controlled else self.load.Get()
         slid = 0.0 if self.slid is None else self.slid.Get()
         ax, ay = self.surface.approach
@@ -190,6 +188,12 @@ class OutlineContact(UnilateralContact):
             gap=self._sample(self.gap(self._state)),
             nodal=self.order == 1,
         )
+
+    def edge_peaks(self) -> Array:
+        """Highest Cauchy pressure at the ends of each mesh edge, in the order of the outline, shape (m,) [MPa]."""
+        profile = self.profile()
+        peaks: Array = profile.pressure[profile.edges].max(axis=1)
+        return peaks
 
     def nodal_pressure(self) -> Array:
         """Nominal pressure at the nodes of ``profile`` [MPa]."""

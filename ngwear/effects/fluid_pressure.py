@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import DISPLACEMENT, Term, Unknowns
+from ngwear.effects.base import Unknowns
 from ngwear.effects.contact import OutlineContact
+from ngwear.effects.edge_pressure import EdgePressure
 from ngwear.errors import SceneError
-from ngwear.geometry.meshed_section import MeshedSection
 
 CENTRE = 2 / 5  # of the way in contact: how far from its inner end a square root of the way has its centre
 # Half of a thousandth, the least error that a run may state; settled on the rod seal (``verify rod_seal``).
@@ -21,7 +22,7 @@ SWINGS, LEAST = 2, 0.1  # updates with whole steps; least share of the way betwe
 LESS = 0.05
 
 
-class FluidPressure(Term):
+class FluidPressure(EdgePressure):
     """Follower traction ``-chi p n`` on the wetted part of named edges: the fluid from one inlet.
 
     chi is 1 from the middle of the inlet edges (where a surface touches that: of their longest piece without contact),
@@ -58,8 +59,6 @@ class FluidPressure(Term):
         Whether pockets keep the fluid's pressure (``TrappedFluid``), False at first: then it does not stay behind a
         contact when its pressure falls.
 
-    names : array of str, shape (m,)
-        Of the mesh edges, in the order of the outline, once it has been added to a form.
     paths : list of tuple of int and array
         The two ways from the inlet: the direction along the outline, 1 or -1, and the mesh edges.
     beyond : list of str
@@ -71,8 +70,6 @@ class FluidPressure(Term):
         If the inlet is not among the edges.
     """
 
-    symmetric = False
-
     def __init__(
         self,
         edges: Sequence[str],
@@ -82,8 +79,8 @@ class FluidPressure(Term):
         name: str = "fluid",
         held: Sequence[str] = (),
     ) -> None:
-        super().__init__()
-        self.edges, self.inlet, self.contacts = tuple(edges), tuple(inlet), tuple(contacts)
+        super().__init__(edges)
+        self.inlet, self.contacts = tuple(inlet), tuple(contacts)
         self.name, self.held = name, tuple(held)
         self.others: tuple[FluidPressure, ...] = ()
         self.traps, self._last = False, 0.0
@@ -94,27 +91,18 @@ class FluidPressure(Term):
         self.leaks, self._solved, self._moves = False, False, 0
         self._before, self._change = np.empty(0), np.empty(0)
 
+    def nominal(self) -> Any:
+        return self.pressure * self.field
+
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
-        body = unknowns.section
-        region = body.boundary(self.edges)
-        self._body, self._unknowns, self._region = body, unknowns, region
-        self.wetted = ng.GridFunction(ng.SurfaceL2(body.mesh, order=0))
-        space = self.wetted.space
-        self._unknown = np.array([space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in body.outline.element])
-        u, v = unknowns.u, unknowns.v
-        area = unknowns.kinematics.area_vector(u, ng.Grad(u).Trace())
-        work = self.pressure * self.wetted * unknowns.kinematics.weight * (area * v)
-        form += work.Compile() * ng.ds(definedon=region, bonus_intorder=2)
-        self._order_path(body)
+        super().add_to(form, unknowns)
+        self._order_path()
         self.refresh()
 
-    def _order_path(self, body: MeshedSection) -> None:
+    def _order_path(self) -> None:
         """Order the mesh edges that the fluid may reach outwards from the inlet's middle, once in each direction."""
-        line = body.outline
-        self._inlet = inlet = np.isin(line.names, self.inlet)
-        m = len(line.names)
-        self.names, self._lengths = line.names, body.contour.arc_lengths(*line.t.T)
-        self._middles = body.base.at(line.t.ravel()).reshape(-1, 2, 2).mean(axis=1)
+        self._inlet = inlet = np.isin(self.names, self.inlet)
+        m = len(self.names)
         self._passed, self._reached = [0, 0], [0, 0]  # edges of each way
         self._drained = [False, False]
         whole = bool(inlet.all())
@@ -179,18 +167,17 @@ class FluidPressure(Term):
             self._reached[k] = reached if self.pressure.Get() > 0 else 0
             if len(stop) and stop[0] > 0:
                 share[path[stop[0]]] = outside[path[stop[0]], 0 if step == 1 else 1]
-        field = self.wetted.vec.FV().NumPy()
         pressure = abs(self.pressure.Get())
-        moved = pressure * float(self._lengths @ np.abs(field[self._unknown] - share)) > STAYS * carried
+        moved = pressure * float(self._lengths @ np.abs(self.shares - share)) > STAYS * carried
         if self._solved:
             self._moves = self._moves + 1 if moved else 0
         if moved or not self._solved:
-            now = field[self._unknown]
+            now = self.shares
             change = share - now
             if self._moves > SWINGS:
                 share = now + self._between(now, change)
             self._before, self._change = now, change
-            field[self._unknown] = share
+            self.on_edges = share
         self._solved = False
         return moved
 
@@ -243,9 +230,7 @@ class FluidPressure(Term):
         """
         bears = sum((fluid.pressure.Get() * fluid.shares for fluid in self.others), self.pressure.Get() * self.shares)
         for contact in self.contacts:
-            profile = contact.profile()
-            pressure = profile.pressure[profile.edges].max(axis=1)
-            bears[contact.positions] = np.maximum(bears[contact.positions], pressure)
+            bears[contact.positions] = np.maximum(bears[contact.positions], contact.edge_peaks())
         for k, (_, path) in enumerate(self.paths):
             stop = np.flatnonzero(stops[k])
             stop = stop[stop >= self._passed[k]]
@@ -307,15 +292,7 @@ class FluidPressure(Term):
     @property
     def shares(self) -> np.ndarray:
         """Value of chi on each mesh edge, in the order of the outline, shape (m,) [-]."""
-        return self.wetted.vec.FV().NumPy()[self._unknown]
-
-    def force(self) -> np.ndarray:
-        """Resultant of the fluid on the part; shape (2,) [N], or N/mm in plane strain."""
-        u, kinematics = self._unknowns.state[DISPLACEMENT], self._unknowns.kinematics
-        area = kinematics.area_vector(u, ng.Grad(u))
-        scale = -self.pressure.Get() * self.wetted * kinematics.weight
-        measure = ng.ds(definedon=self._region, bonus_intorder=2)
-        return np.array([ng.Integrate(scale * area[k] * measure, self._body.mesh) for k in range(2)])
+        return self.on_edges
 
 
 def free_of_contact(pressure: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ngwear.effects.base import Array
 from ngwear.effects.contact import OutlineContact
+from ngwear.fields.displacements import at_vertices
 from ngwear.geometry.meshed_section import MeshedSection
 from ngwear.geometry.outline import polygon_area
 
@@ -38,9 +39,7 @@ def contact_pressures(section: MeshedSection, contacts: Sequence[OutlineContact]
     """Highest Cauchy pressure of each contact on each mesh edge of the outline, shape (contacts, m) [MPa]."""
     found = np.zeros((len(contacts), len(section.outline.names)))
     for row, contact in zip(found, contacts, strict=True):
-        profile = contact.profile()
-        highest = profile.pressure[profile.edges].max(axis=1)
-        row[contact.positions] = np.where(contact.touching(), highest, 0.0)
+        row[contact.positions] = np.where(contact.touching(), contact.edge_peaks(), 0.0)
     return found
 
 
@@ -71,9 +70,7 @@ def pockets(section: MeshedSection, displacement: ng.GridFunction, contacts: Seq
 
 def _places(section: MeshedSection, displacement: ng.GridFunction) -> Array:
     """Deformed place of the first node of each mesh edge, shape (m, 2) [mm]."""
-    parts = displacement.space.components
-    first = np.cumsum([0, *(part.ndof for part in parts[:-1])])
-    unknowns = first + section.outline.vertices[:, :1]
+    unknowns = at_vertices(displacement.space, section.outline.vertices[:, 0]).T
     places: Array = section.contour.at(section.outline.t[:, 0]) + displacement.vec.FV().NumPy()[unknowns]
     return places
 

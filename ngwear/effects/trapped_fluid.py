@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import ngsolve as ng
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ngwear.effects.base import DISPLACEMENT, Array, Term, Unknowns
+from ngwear.effects.base import DISPLACEMENT, Array, Unknowns
 from ngwear.effects.contact import OutlineContact
+from ngwear.effects.edge_pressure import EdgePressure
 from ngwear.effects.fluid_pressure import LESS, STAYS, FluidPressure
 from ngwear.effects.pockets import contact_pressures, pockets
 
 
-class TrappedFluid(Term):
+class TrappedFluid(EdgePressure):
     """Follower traction ``-q n`` in pockets: the fluid that is left there when contacts cut it off.
 
     Of the pockets (``effects.pockets``) those that no fluid reaches from its inlet. A pocket takes the highest pressure
@@ -34,36 +36,26 @@ class TrappedFluid(Term):
     contacts : sequence of OutlineContact
     """
 
-    symmetric = False
-
     def __init__(
         self, edges: Sequence[str], fluids: Sequence[FluidPressure], contacts: Sequence[OutlineContact]
     ) -> None:
-        super().__init__()
-        self.edges, self.fluids, self.contacts = tuple(edges), tuple(fluids), tuple(contacts)
+        super().__init__(edges)
+        self.fluids, self.contacts = tuple(fluids), tuple(contacts)
         self._solved, self._begins = False, True
 
+    def nominal(self) -> Any:
+        return self.field
+
     def add_to(self, form: ng.BilinearForm, unknowns: Unknowns) -> None:
-        body = unknowns.section
-        self._body, self._unknowns, self._region = body, unknowns, body.boundary(self.edges)
-        self.field = ng.GridFunction(ng.SurfaceL2(body.mesh, order=0))
-        line, space = body.outline, self.field.space
-        self._unknown = np.array([space.GetDofNrs(ng.ElementId(ng.BND, int(nr)))[0] for nr in line.element])
+        super().add_to(form, unknowns)
         inlets = [edge for fluid in self.fluids for edge in fluid.inlet]
-        self._wettable = np.isin(line.names, self.edges) & ~np.isin(line.names, inlets)
-        self._lengths = body.contour.arc_lengths(*line.t.T)
-        self._middles = body.base.at(line.t.ravel()).reshape(-1, 2, 2).mean(axis=1)
-        self.left = np.zeros(len(line.names))
-        u, v = unknowns.u, unknowns.v
-        area = unknowns.kinematics.area_vector(u, ng.Grad(u).Trace())
-        form += (self.field * unknowns.kinematics.weight * (area * v)).Compile() * ng.ds(
-            definedon=self._region, bonus_intorder=2
-        )
+        self._wettable = np.isin(self.names, self.edges) & ~np.isin(self.names, inlets)
+        self.left = np.zeros(len(self.names))
 
     @property
     def pressures(self) -> Array:
         """Pressure q on each mesh edge, in the order of the outline, shape (m,) [MPa]; 0 outside pockets."""
-        return self.field.vec.FV().NumPy()[self._unknown]
+        return self.on_edges
 
     @property
     def leaves(self) -> Array:
@@ -107,13 +99,5 @@ class TrappedFluid(Term):
             carried += float(self._lengths[contact.positions] @ contact.end_pressures().mean(axis=1))
         if self._lengths @ np.abs(q - self.pressures) <= STAYS * carried and not self._begins:
             return False
-        self.field.vec.FV().NumPy()[self._unknown] = q
+        self.on_edges = q
         return True
-
-    def force(self) -> Array:
-        """Resultant of the trapped fluid on the part; shape (2,) [N], or N/mm in plane strain."""
-        u, kinematics = self._unknowns.state[DISPLACEMENT], self._unknowns.kinematics
-        area = kinematics.area_vector(u, ng.Grad(u))
-        measure = ng.ds(definedon=self._region, bonus_intorder=2)
-        loads = [-self.field * kinematics.weight * area[k] for k in range(2)]
-        return np.array([ng.Integrate(load * measure, self._body.mesh) for load in loads])

@@ -31,6 +31,12 @@ def displacements(mesh: ng.Mesh, order: int, **held: str) -> ng.FESpace:
     return space
 
 
+def at_vertices(space: ng.FESpace, vertices: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Unknowns of each component at mesh vertices: those of order 1, which come first; shape (dim, *vertices.shape)."""
+    first = np.cumsum([0, *(part.ndof for part in space.components[:-1])])
+    return first.reshape(-1, *(1 for _ in vertices.shape)) + vertices
+
+
 def stress_order(order: int) -> int:
     """Order of the volumetric stress that is stable with displacements of an order: one less, but 1 with bubbles."""
     return max(order - 1, 1)

@@ -59,11 +59,13 @@ def findings(
 
     ``worn``: whether the part has worn, or wears in this solve.
     """
+    before, place = _outline(stage)
     found = [
-        *_overlaps(stage, worn=worn),
-        *_crossings(stage),
+        *_overlaps(stage, before, place, worn=worn),
+        *_crossings(place),
         *_imbalance(stage, forces),
         *_crushed(stage),
+        *_covered_inlets(stage, stroke),
         *_blow_by(stage, stroke),
     ]
     for name, profile in profiles.items():
@@ -71,9 +73,9 @@ def findings(
     return tuple(found)
 
 
-def _overlaps(stage: Stage, *, worn: bool) -> Iterator[Finding]:
+def _overlaps(stage: Stage, before: Array, place: Array, *, worn: bool) -> Iterator[Finding]:
     """Nodes of the whole outline that lie inside a surface, whether its contact lists their edges or not."""
-    line, (before, place) = stage.body.outline, _deformed(stage)
+    line = stage.body.outline
     length = np.linalg.norm(np.roll(place[0], -1, axis=0) - place[0], axis=1)
     for name, contact in stage.contacts.items():
         own = np.isin(line.names, contact.edges)
@@ -93,11 +95,10 @@ def _overlaps(stage: Stage, *, worn: bool) -> Iterator[Finding]:
                 yield Finding(f"overlap {name} {edge}", deep, f"{where}{advice}", places)
 
 
-def _crossings(stage: Stage) -> Iterator[Finding]:
+def _crossings(place: Array) -> Iterator[Finding]:
     """A deformed outline that crosses itself: the part has no contact with itself."""
     from shapely import Polygon, is_valid, is_valid_reason
 
-    place = _deformed(stage)[1]
     outline = Polygon(place.transpose(1, 0, 2).reshape(-1, 2))
     if not is_valid(outline):
         where = ", ".join(f"{float(x):.4g}" for x in is_valid_reason(outline).partition("[")[2].rstrip("]").split())
@@ -107,7 +108,7 @@ def _crossings(stage: Stage) -> Iterator[Finding]:
         yield Finding("crossing", 1.0, f"{sentence}; the results are those of a part that goes through itself")
 
 
-def _deformed(stage: Stage) -> tuple[Array, Array]:
+def _outline(stage: Stage) -> tuple[Array, Array]:
     """Places of the start and the middle of each mesh edge before and after the deformation, shape (2, m, 2) [mm]."""
     line, nodes, u = stage.body.outline, ElementNodes(stage.body.mesh), stage.problem.fields[DISPLACEMENT]
     values = nodes.values(ng.CF((ng.x, ng.y, u[0], u[1])))
@@ -173,16 +174,18 @@ def _crushed(stage: Stage) -> Iterator[Finding]:
         )
 
 
-def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
-    """A contact that carries less than the fluid's pressure: the fluid would open it."""
+def _covered_inlets(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
+    """A fluid that comes in nowhere."""
     for name, fluid in stage.fluids.items():
         pressure = fluid.pressure.Get()
         if pressure > 0 and not fluid.shares.any():
-            sentence = (
-                f"stroke '{stroke.name}': surfaces touch the whole inlet of '{name}', so that its {pressure:.3g} MPa "
-            )
-            sentence += "act nowhere; name edges on the sealed side in fluid.inlet"
+            sentence = f"surfaces touch the whole inlet of '{name}', so that its {pressure:.3g} MPa act nowhere; name "
+            sentence = f"stroke '{stroke.name}': {sentence}edges on the sealed side in fluid.inlet"
             yield Finding(f"inlet {stroke.name} {name}", pressure, sentence)
+
+
+def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
+    """A contact that carries less than the fluid's pressure: the fluid would open it."""
     for blown in stage.blow_by():
         what = f"stroke '{stroke.name}': the {blown.pressure:.3g} MPa of '{blown.inlet}'"
         if blown.holds > 0:

@@ -38,7 +38,7 @@ from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.stroke_report import stroke_report
-from ngwear.loop.stroke_solve import EMPTIES, empties, recorder, settle_last_stroke, solve_stroke
+from ngwear.loop.stroke_solve import recorder, settle_last_stroke, solve_stroke, steps_for
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.boundary import GO_ON
 from ngwear.scene.scene import Scene
@@ -145,9 +145,7 @@ class Stepper:
             path: list[tuple[float, Array]] = []
             on_step = recorder(stage.problem, path)
             loads = stage.stroke_loads(stroke)
-            options = StepOptions(first=0.5)
-            if empties(state, i):
-                options = StepOptions(first=EMPTIES, largest=EMPTIES)
+            options = steps_for(state, i, StepOptions(first=0.5))
             work = advance_on_finer(state, loads, options, begin=begin, on_step=on_step)
             stage = state.stage
             state.work.add(work)

@@ -22,8 +22,8 @@ from ngwear.wear.sliding_distance import Strokes
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
-# Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
 EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is the pressure that a pocket keeps
+# Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
 HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
 
@@ -156,6 +156,11 @@ def empties(state: State, index: int) -> bool:
     return any(cycle[index].pressure_at(name) < cycle[index - 1].pressure_at(name) for name in fluids)
 
 
+def steps_for(state: State, index: int, options: StepOptions) -> StepOptions:
+    """Options of the load steps to a stroke: small ones where pockets may keep what a fluid leaves (``empties``)."""
+    return replace(options, first=EMPTIES, largest=EMPTIES) if empties(state, index) else options
+
+
 def _begin_path(state: State, index: int) -> None:
     """Set the end of the previous stroke of the cycle and its loads; friction counts the slip from there."""
     stage, before = state.stage, state.phases[index - 1].vector
@@ -219,9 +224,7 @@ def _approach(state: State, index: int, stroke: Stroke, work: Work, options: Ste
     stage, problem = state.stage, state.stage.problem
     _set_guess(state, state.phases[index].vector)
     follows, lowered = stage.has_stick_slip and stage.scene.deactivation is None, empties(state, index)
-    if lowered:
-        options = replace(options, first=EMPTIES, largest=EMPTIES)
-    elif not follows:
+    if not follows and not lowered:
         try:
             work.add(relax(problem, options))
             return []
@@ -229,6 +232,7 @@ def _approach(state: State, index: int, stroke: Stroke, work: Work, options: Ste
             log.info("%s: trying from the previous stroke", error)
     _begin_path(state, index)
     path: list[tuple[float, Array]] = []
+    options = steps_for(state, index, options)
     work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
     return path if follows and not lowered else []
 

@@ -211,7 +211,7 @@ def run() -> list[Check]:
             term.prepare()
             term.gather()
             if isinstance(term, FluidPressure):
-                share = term.wetted.vec.FV().NumPy()
+                share = term.field.vec.FV().NumPy()
                 share[:] = rng.uniform(0, 1, len(share))
             if isinstance(term, Viscosity):
                 term.relaxed += rng.uniform(-1, 1, term.relaxed.shape)

@@ -37,7 +37,7 @@ from ngwear.scene.accuracy import PRESETS
 
 STROKES, TRAVEL = 2000, 20.0
 INSIDE, INSIDE_SHARE = 1e-3, 0.01  # a node may lie so far inside a surface: mm, and share of the mesh edge
-WORN_BY = ("rod", "bore")
+WORN_BY, LAST = ("rod", "bore"), 2  # surfaces that wear the part; cycles in the series' last rows
 ALTERNATES, IMBALANCE, DIFFERS = 0.1, 1e-5, 0.05
 COMPARED = ("maximum depth", "peak pressure")
 WRONG, CRASHED, LIMIT, GAVE_UP = "silent wrong answer", "crashed", "time limit", "gave up"
@@ -211,7 +211,8 @@ def inside(section: Section, result: ResultFile) -> list[str]:
     """Surfaces that nodes of the deformed outline lie in, and how deep."""
     nodes = section.points[section.border]
     resting = INSIDE + INSIDE_SHARE * np.linalg.norm(nodes[:, 2] - nodes[:, 0], axis=1)
-    worn = np.diff(result.series["maximum depth [mm]"], prepend=0.0).max()  # in one solve, which ends inside by it
+    # A solve of strokes that wear ends inside by what they wear: no more than the last cycles have.
+    worn = np.ptp(result.series["maximum depth [mm]"][-LAST * len(result.kinds) :])
     found = []
     for name, surface in result.surfaces.items():
         allowed = resting + worn * (name in WORN_BY)

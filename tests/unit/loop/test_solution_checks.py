@@ -168,6 +168,6 @@ def test_an_inlet_that_surfaces_cover_is_found(scene):
     fluid = nw.Fluid(edges=["left", "top"], inlet=["left"])
     state = Stepper(replace(scene, fluid=fluid, program=replace(scene.program, cycle=[stroke]))).start()
     assert not [key for key in found(state.stage, state.reports[-1]) if key.startswith("inlet")]
-    state.stage.fluids["fluid"].wetted.vec[:] = 0.0  # as if a surface touched all of it
+    state.stage.fluids["fluid"].field.vec[:] = 0.0  # as if a surface touched all of it
     (finding,) = [f for key, f in found(state.stage, state.reports[-1]).items() if key.startswith("inlet")]
     assert "surfaces touch the whole inlet of 'fluid', so that its 0.1 MPa act nowhere" in finding.sentence
