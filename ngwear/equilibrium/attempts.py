@@ -21,9 +21,11 @@ SHARPER = 0.2  # times the rounding before; the root of it after a failure
 SHARP = 1e-4  # of G: from here to the corner itself
 # Strength of springs that hold the part back, in G / L: the first one as stiff as the part.
 FIRST, LOOSE = 1.0, 2e-4
-WEAKER, LEAST, GROWS = 4.0, 1.3, 1.2  # factor between two steps, and the least one; its growth after an easy step
+WEAKER, FAR = 4.0, 0.1  # factor between two steps; motion of a step, over the section's size, that is aimed at
+ABOVE, GROWS = 2.0, 1.2  # times a strength that failed: the least one; by what that falls in each step
 STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a strength: an equilibrium is near
-EASY, FAILURES, MOST = 10, 4, 200  # iterations of a step that may get longer; failures, and iterations, until it ends
+QUARTER = 90.0  # degrees: from there on a ring resists turning with a moment that falls
+FAILURES, MOST = 4, 400  # failures in a row, and iterations, until it ends
 
 
 def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
@@ -50,7 +52,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
             problem.state.vec.data = start
             if report.outcome not in MORE_MAY_HELP:
                 return report
-        if not _round_off(problem, 0.0):
+        if not options.rounds or not _round_off(problem, 0.0):
             return report
         for term in problem.terms:
             term.attempt(0)
@@ -60,6 +62,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
         rounded.rounded = True
         return rounded
     report.iterations += rounded.iterations
+    report.outcome = rounded.outcome if rounded.outcome is Outcome.ROLLED else report.outcome
     problem.state.vec.data = start
     return report
 
@@ -94,7 +97,7 @@ def _by_rounded_laws(problem: Problem, options: NewtonOptions) -> Report:
                     continue
                 goal = goal if rounding < math.inf else ROUNDED[0]
                 _round_off(problem, goal)
-                if IMBALANCE not in problem.parameters:  # else it is a state on the way only: a shorter step is cheaper
+                if options.moves and IMBALANCE not in problem.parameters:  # else a shorter step takes less time
                     report = _move_over(problem, options)
                     total += report.iterations
                 sharper = SHARPER
@@ -116,7 +119,7 @@ def _move_over(problem: Problem, options: NewtonOptions) -> Report:
     """
     place = problem.part(DISPLACEMENT)
     before = problem.state.vec.CreateVector()
-    strength, weaker, total, failures = FIRST, WEAKER, 0, 0
+    strength, bound, total, failures = FIRST, 0.0, 0, 0
     report = Report(Outcome.STALLED)
     try:
         while failures <= FAILURES and total <= MOST:
@@ -127,17 +130,21 @@ def _move_over(problem: Problem, options: NewtonOptions) -> Report:
             if not report.converged:
                 problem.state.vec.data = before
                 failures += 1
+                bound = ABOVE * strength
                 strength = WEAKER * max(strength, LOOSE)
-                weaker = max(LEAST, math.sqrt(weaker))
                 continue
             if strength == 0.0:
                 break
+            if abs(problem.turned()) > QUARTER:
+                report.outcome = Outcome.ROLLED
+                break
+            failures = 0
             moved = _largest(problem.state.vec, before, place) / problem.body.size
+            bound = bound / GROWS if moved > STANDS else 0.0
             if strength < LOOSE or (strength < NEARLY_LOOSE and moved < STANDS):
                 strength = 0.0
-            elif report.iterations <= EASY:
-                strength /= weaker
-                weaker = min(WEAKER, GROWS * weaker)
+            else:
+                strength = max(strength / min(WEAKER, max(1.0, FAR / moved)), bound)
     finally:
         _hold_back(problem, 0.0)
     report.iterations = total

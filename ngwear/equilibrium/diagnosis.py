@@ -1,4 +1,4 @@
-"""Diagnosis of a failed load step from its last equilibrium: a part that is not held or rolls, an unstable surface."""
+"""Diagnosis of a failed load step from its last equilibrium: a part that is not held, or rolls; an unstable surface."""
 
 from __future__ import annotations
 
@@ -19,13 +19,17 @@ FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by
 # and wrinkles (Biot, Appl. Sci. Res. A 12 (1963) 168).
 CREASING, WRINKLING = 0.65, 0.544
 REMEDIES = "lower the friction or the load, use smaller steps, or a stiffer rubber"
+ROLLS_OVER = (
+    "friction rolls the part over, and no state is left in which it only slides: lower the friction where the part "
+    "slides, or give it less room along the axis"
+)
 ROLLS = 45.0  # degrees: a ring resists turning with a moment that grows less and less, up to a quarter of a turn
 NEAR = 1.03  # times the creasing stretch: the last equilibrium counts as near it up to here
 
 
 def diagnosis(problem: Problem) -> str:
     """Sentences for the message of a failed load step; empty if no cause is found."""
-    found = [_unheld(problem), _rolls(problem), _unstable_surface(problem)]
+    found = [_unheld(problem), _unstable_surface(problem)]
     return "".join(f"\n{sentence}" for sentence in found if sentence)
 
 
@@ -92,14 +96,9 @@ def _rigid_motions(problem: Problem) -> list[tuple[str, Array]]:
     return found
 
 
-def _rolls(problem: Problem) -> str:
-    """A part with room to move that friction has turned so far that it goes on rolling."""
-    if not any(isinstance(term, RigidMotion) for term in problem.terms) or abs(problem.turned()) < ROLLS:
-        return ""
-    return (
-        f"the section has turned by {problem.turned():.0f}°: friction rolls the part over, and no state is left in "
-        "which it only slides: lower the friction where the part slides, or give it less room along the axis"
-    )
+def rolls(problem: Problem) -> bool:
+    """Whether a part with room to move has been turned so far that it goes on rolling."""
+    return any(isinstance(term, RigidMotion) for term in problem.terms) and abs(problem.turned()) >= ROLLS
 
 
 def _unstable_surface(problem: Problem) -> str:

@@ -23,6 +23,7 @@ class Outcome(enum.Enum):
     FOLDED = "an element would turn inside out: take smaller load steps or refine there"
     SINGULAR = "the tangent is singular: is the body held, and does every force-controlled surface touch it?"
     STALLED = "the corrections do not shrink: take smaller load steps"
+    ROLLED = "the part rolls over on the way to another equilibrium"
     BAD_START = "the start state has inverted elements: start from a state closer to the solution"
 
 
@@ -55,6 +56,8 @@ class NewtonOptions:
         The share of the residual that a correction leaves is the ratio of the next correction to it.
     damped : bool
         Halve a correction until the next one is shorter. Only for smooth laws: at a corner the next one may be longer.
+    rounds, moves : bool
+        Whether a solve that fails may go on by rounded laws, and over states out of equilibrium (``attempts.solve``).
     """
 
     tolerance: float = 1e-7  # of the section: 0.5 nm of one of 5 mm
@@ -62,6 +65,8 @@ class NewtonOptions:
     max_iterations: int = 25  # a solve takes four to eight
     reuse: bool = False
     damped: bool = False
+    rounds: bool = True
+    moves: bool = True
 
 
 @dataclass

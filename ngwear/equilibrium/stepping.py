@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ngwear.equilibrium.attempts import solve
-from ngwear.equilibrium.diagnosis import diagnosis
+from ngwear.equilibrium.diagnosis import ROLLS_OVER, diagnosis, rolls
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
@@ -132,6 +132,7 @@ def advance(
         # With an imbalance load the fluid front stays: moving it would change that load.
         update = IMBALANCE not in target or goal == 1.0
         here = options if goal == 1.0 else on_the_way
+        here = replace(here, newton=replace(here.newton, moves=step <= SHORT))
         gradually = step <= SHORT  # a longer one is halved first
         report = settle(problem, here, work, update=update, gradually=gradually)
         if have_rate and not report.converged and report.outcome is Outcome.BAD_START:
@@ -141,10 +142,12 @@ def advance(
             vector.data = last
             have_rate = False
             step /= 2
-            if step < options.smallest:
+            if step < options.smallest or report.outcome is Outcome.ROLLED:
                 problem.set_loads({name: start[name] + done * (target[name] - start[name]) for name in target})
                 way = f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}"
-                cause = diagnosis(problem)
+                if rolls(problem):
+                    report = replace(report, outcome=Outcome.ROLLED)
+                cause = f"\n{ROLLS_OVER}" if report.outcome is Outcome.ROLLED else diagnosis(problem)
                 raise ConvergenceError(way + cause, report, cause=cause)
             continue
         if update or math.isfinite(duration):
@@ -158,7 +161,7 @@ def advance(
         if report.iterations <= options.easy:
             step = min(2 * step, max(step, options.largest))
         elif report.iterations > 2 * options.easy and not report.rounded:
-            step /= 2
+            step = max(step / 2, options.smallest)  # slow steps end, too
     return work
 
 

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.newton import Report
+from ngwear.equilibrium.newton import NewtonOptions, Report
 from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
@@ -34,10 +34,16 @@ def solve_stroke(
     sliding: Strokes,
     *,
     plan: Plan = (),
+    at_once: bool = False,
 ) -> int:
     """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
 
-    ``plan`` is the plan of the step, for the memory.
+    ``plan`` is the plan of the step, for the memory. With ``at_once`` no load steps are tried.
+
+    Raises
+    ------
+    ConvergenceError
+        If no equilibrium is found.
     """
     stage, phase = state.stage, state.phases[index]
     problem = stage.problem
@@ -63,7 +69,11 @@ def solve_stroke(
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
     if (phase.path and phase.shares is None) or empties(state, index):
         guesses = []  # on a new mesh a way that needed steps needs them again
-    if not any(_solves(state, guess, work) for guess in guesses):
+    reports = (_solves(state, guess, work) for guess in guesses)
+    last = None
+    if not any((last := report).converged for report in reports):
+        if at_once and last is not None:
+            raise ConvergenceError(f"the {stroke.name} stroke needs load steps", last)
         starts = bool(stage.floats) and repeats == 0 and state.strokes == 0
         path, fewest = _by_steps(state, index, stroke, work, hard=repeats > 1 or starts)
     state.work.add(work)
@@ -83,7 +93,7 @@ def solve_stroke(
     return work.iterations
 
 
-def settle_last_stroke(state: State) -> None:
+def settle_last_stroke(state: State, *, at_once: bool = False) -> None:
     """Bring the end of the cycle's last stroke, as transferred to a new mesh, to equilibrium there.
 
     A point that sticks stays where it is. The next stroke starts from there: from a state out of balance its first load
@@ -99,19 +109,23 @@ def settle_last_stroke(state: State) -> None:
     stage.begin(last.vector)
     stage.let_fluid_pass(last.passed)
     stage.leave_fluid(last.left)
-    if not _solves(state, last.vector, work):
+    report = _solves(state, last.vector, work)
+    if at_once and not report.converged:
+        raise ConvergenceError("the last stroke of the cycle needs load steps", report)
+    if not report.converged:
         _set_guess(state, last.vector)
         work.add(relax(stage.problem, StepOptions(first=0.25, smallest=HARDEST)))
     state.work.add(work)
     last.vector = stage.problem.state.vec.FV().NumPy().copy()
 
 
-def _solves(state: State, guess: Array, work: Work) -> bool:
-    """Whether the present loads are solved at once from a first guess."""
+def _solves(state: State, guess: Array, work: Work) -> Report:
+    """Try to solve the present loads at once from a first guess."""
     _set_guess(state, guess)
     for term in state.stage.problem.terms:
         term.refresh()
-    return settle(state.stage.problem, StepOptions(), work).converged
+    at_once = StepOptions(newton=NewtonOptions(rounds=False))  # load steps take less time
+    return settle(state.stage.problem, at_once, work)
 
 
 def _by_steps(
@@ -190,7 +204,7 @@ def _follow(
 
     def solves(step: int) -> bool:
         problem.set_loads(at(known[step][0]))
-        return _solves(state, known[step][1], work)
+        return _solves(state, known[step][1], work).converged
 
     here = 0
     while here < len(known):
