@@ -124,8 +124,8 @@ class FullSliding(Friction):
         return np.array([self._integral(self.slip.Get() * t * self._limit()) for t in tangent])
 
     def heat(self, way: float) -> float:
-        """``way int mu P dA``."""
-        return way * self._integral(self._limit())
+        """``way |slip| int mu P dA``."""
+        return way * abs(self.slip.Get()) * self._integral(self._limit())
 
     def margin(self) -> float:
         """Least Re f over the contact (see ``Ripples``) [-]: below 0 steady sliding is unstable; nan out of contact."""

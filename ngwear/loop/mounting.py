@@ -142,10 +142,10 @@ def give_memory(state: State, scene: Scene, arms: PronySeries) -> None:
     from ngwear.loop.memory_over_cycles import CycleMemory
 
     (first, *_), phase = scene.program.cycle, state.phases[0]
-    body = state.stage.body
+    body, shares = state.stage.body, state.stage.friction_shares
     field = required_sizes(state.stage, [p.vector for p in state.phases], reach=MAY_COME)
     background = Background(Body(body.contour, field))
-    state.stage = stage = Stage(scene, body, background)
+    state.stage = stage = Stage(scene, body, background, shares)
     stage.problem.state.vec.FV().NumPy()[:] = phase.vector
     stage.begin(phase.vector)
     stage.problem.set_loads(stage.stroke_loads(first))

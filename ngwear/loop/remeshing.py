@@ -82,7 +82,7 @@ def remesh(
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
-    stage = Stage(old.scene, body, state.background)
+    stage = Stage(old.scene, body, state.background, old.friction_shares)
     ways = [vector for phase in state.phases for _, vector in phase.path]
     replace_stage(state, stage, transfer(old.problem, phases + ways, stage.problem))
     state.fine = fine

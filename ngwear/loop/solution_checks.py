@@ -1,4 +1,4 @@
-"""Look at an accepted solve: overlap, zigzag pressures, forces out of balance, crushed elements, folds, blow-by.
+"""Look at an accepted solve: overlap, zigzag pressures, imbalance, crushed elements, folds, blow-by, rolling.
 
 Every stroke that is recorded is looked at. A finding is a sentence with the place and the value; the run keeps the
 worst of each kind and place, and lists them as warnings.
@@ -67,6 +67,7 @@ def findings(
         *_crushed(stage),
         *_covered_inlets(stage, stroke),
         *_blow_by(stage, stroke),
+        *_rolls(stage, stroke),
     ]
     for name, profile in profiles.items():
         found += _zigzag(name, profile)
@@ -182,6 +183,16 @@ def _covered_inlets(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
             sentence = f"surfaces touch the whole inlet of '{name}', so that its {pressure:.3g} MPa act nowhere; name "
             sentence = f"stroke '{stroke.name}': {sentence}edges on the sealed side in fluid.inlet"
             yield Finding(f"inlet {stroke.name} {name}", pressure, sentence)
+
+
+def _rolls(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
+    """Friction that rolls the part over, so that only a share of it acts in this solve."""
+    share = stage.friction_shares.get(stroke.name, 1.0)
+    if share < 1:
+        sentence = f"stroke '{stroke.name}': friction rolls the part over; the results are for {100 * share:.0f} % of "
+        sentence += "the friction, with which it still slides. Rolling, it slides less than the travel and wears less; "
+        sentence += "lower the friction where it slides, or give it less room along the axis"
+        yield Finding(f"rolls {stroke.name}", 1 - share, sentence)
 
 
 def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:

@@ -49,12 +49,20 @@ class Stage:
         Components of the displacement in which nothing holds the part (``ngwear.scene.holding``).
     memory : StrokeMemory or None
     problem : Problem
+    friction_shares : dict of str to float
+        Share of the friction in full sliding that acts in a stroke; 1 if it is not named (``ngwear.loop.rolling``).
 
     ``background`` is the mesh on which the viscoelastic memory is stored; None, as during mounting: no memory.
     """
 
-    def __init__(self, scene: Scene, body: MeshedSection, background: Background | None = None) -> None:
-        self.scene, self.body = scene, body
+    def __init__(
+        self,
+        scene: Scene,
+        body: MeshedSection,
+        background: Background | None = None,
+        friction_shares: dict[str, float] | None = None,
+    ) -> None:
+        self.scene, self.body, self.friction_shares = scene, body, dict(friction_shares or {})
         rubber = scene.rubber
         modulus = rubber.shear_modulus
         self.elasticity = Elasticity(rubber, order=scene.accuracy.order)
@@ -151,7 +159,7 @@ class Stage:
             loads |= dict.fromkeys(contact.loads, 0.0 if spec.force is None else spec.force)
             if spec.name in self.frictions:
                 friction = self.frictions[spec.name]
-                way = stroke.travel if friction.remembers else 1.0
+                way = stroke.travel if friction.remembers else self.friction_shares.get(stroke.name, 1.0)
                 loads |= dict.fromkeys(friction.loads, stroke.direction * way if spec.slides else 0.0)
         for name, fluid in self.fluids.items():
             loads |= dict.fromkeys(fluid.loads, stroke.pressure_at(name))

@@ -194,14 +194,16 @@ class State:
     def to_data(self) -> dict[str, Any]:
         """The state as plain data, from which ``from_data`` restores it exactly; of the scene only the accuracy."""
         data = {f.name: getattr(self, f.name) for f in fields(self) if f.name != "stage"}
-        return data | {"accuracy": self.stage.scene.accuracy, "body": self.stage.body}
+        stage = self.stage
+        return data | {"accuracy": stage.scene.accuracy, "body": stage.body, "friction_shares": stage.friction_shares}
 
     @classmethod
     def from_data(cls, data: dict[str, Any], scene: Scene) -> State:
         """Restore the state from plain data, with the same scene."""
         there = replace(scene, accuracy=data["accuracy"])
         memory: CycleMemory | None = data["memory"]
-        stage = Stage(there, data["body"], None if memory is None else memory.background)
+        background = None if memory is None else memory.background
+        stage = Stage(there, data["body"], background, data["friction_shares"])
         return cls(stage, **{f.name: data[f.name] for f in fields(cls) if f.name != "stage"})
 
     def saved(self) -> dict[str, Any]:

@@ -35,6 +35,7 @@ from ngwear.loop.mounting import (
 )
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
+from ngwear.loop.rolling import hold_short_of_rolling, is_rolling
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.stroke_report import stroke_report
@@ -52,8 +53,8 @@ if TYPE_CHECKING:  # modules of effects that a scene does not have are not impor
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
-# These were settled on the rod seal (NARROWER, FIRST), an O-ring (AT_ONCE), an X-ring (MOVING) and the torn seal (LATE):
-# the list in tests/benchmarks/README.md says by which command.
+# These were settled on the rod seal (NARROWER, FIRST), an O-ring (AT_ONCE), an X-ring (MOVING) and the torn seal
+# (LATE): the list in tests/benchmarks/README.md says by which command.
 NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
 AT_ONCE = 3.0  # times as short as on the last mesh are the patch's edges of the next, if the part has room to move
 MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
@@ -134,6 +135,7 @@ class Stepper:
         """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
         cycle, begin = self.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
         state.phases = []
+        state.stage.friction_shares.clear()
         state.stage.leave_fluid(np.empty((0, 3)))
         state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
         if self._lost_elements is not None:
@@ -147,7 +149,12 @@ class Stepper:
             on_step = recorder(stage.problem, path)
             loads = stage.stroke_loads(stroke)
             options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
-            work = advance_on_finer(state, loads, options, begin=begin, on_step=on_step)
+            try:
+                work = advance_on_finer(state, loads, options, begin=begin, on_step=on_step)
+            except ConvergenceError as error:
+                if not is_rolling(error):
+                    raise
+                work = hold_short_of_rolling(state.stage, stroke.name, loads, error)
             stage = state.stage
             state.work.add(work)
             needed = i > 0 and work.retries > 0 and stage.has_stick_slip and self.scene.deactivation is None

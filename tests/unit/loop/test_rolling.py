@@ -1,0 +1,96 @@
+"""A ring that friction rolls over: solved with as much of the friction as it bears, and said."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ngwear as nw
+from ngwear.equilibrium.newton import Outcome, Report
+from ngwear.errors import ConvergenceError
+from ngwear.loop.element_sizes import coarse_for_mounting, with_mounting_lengths
+from ngwear.loop.mounting import unworn_body
+from ngwear.loop.rolling import BELOW, hold_short_of_rolling, is_rolling
+from ngwear.loop.solution_checks import findings
+from ngwear.loop.stage import Stage
+from ngwear.loop.state import State
+from ngwear.loop.stepper import Stepper
+
+RUBBED, SMOOTH = 0.4, 0.05  # friction of the rod, and of all that could stop the ring from turning
+
+
+def rubbed():
+    """An O-ring whose rod rubs and whose groove is smooth."""
+    scene = nw.read_scene("geometries/o_ring/scene.toml")
+    contacts = tuple(replace(c, friction=RUBBED if c.slides else SMOOTH) for c in scene.contacts)
+    return replace(scene, contacts=contacts, accuracy=nw.Accuracy.draft())
+
+
+@pytest.fixture(scope="module")
+def rolled():
+    """Scene and first state of such a ring."""
+    scene = rubbed()
+    return scene, Stepper(scene).start()
+
+
+@pytest.fixture(scope="module")
+def stage():
+    """Such a ring at rest, with half of the friction in one stroke."""
+    scene = coarse_for_mounting(with_mounting_lengths(rubbed()))
+    return Stage(scene, unworn_body(scene, 6.0), friction_shares={"outward": 0.5})
+
+
+def test_a_share_of_the_friction_acts_in_the_stroke_that_has_one(stage):
+    first, second = stage.scene.program.cycle
+    assert (first.name, second.name) == ("outward", "inward")
+    assert stage.stroke_loads(first)["rod slip"] == 0.5 * first.direction
+    assert stage.stroke_loads(second)["rod slip"] == second.direction
+
+
+def test_it_is_a_finding_of_that_stroke_alone(stage):
+    told = [
+        [f.sentence for f in findings(stage, {}, {}, stroke, worn=False) if f.key.startswith("rolls")]
+        for stroke in stage.scene.program.cycle
+    ]
+    assert [len(sentences) for sentences in told] == [1, 0]
+    assert "stroke 'outward': friction rolls the part over; the results are for 50 % of the friction" in told[0][0]
+
+
+def test_without_friction_to_lower_the_part_is_given_up(stage):
+    error = ConvergenceError("no equilibrium", Report(Outcome.ROLLED))
+    assert is_rolling(error)
+    assert not is_rolling(ConvergenceError("no equilibrium", Report(Outcome.STALLED)))
+    target = stage.stroke_loads(stage.scene.program.cycle[0]) | {"rod slip": 0.0}
+    with pytest.raises(ConvergenceError, match="no equilibrium"):
+        hold_short_of_rolling(stage, "outward", target, error)
+
+
+@pytest.mark.slow
+def test_a_stroke_in_which_the_ring_rolls_has_the_friction_that_it_bears(rolled):
+    scene, state = rolled
+    shares = state.stage.friction_shares
+    assert shares, "the ring does not roll: this test needs more friction"
+    assert all(0 < share < BELOW for share in shares.values())
+    for report, stroke in zip(state.reports, scene.program.cycle, strict=True):
+        friction, load = np.abs(report.forces["rod friction"]), np.abs(report.forces["rod"])
+        assert friction[0] == pytest.approx(RUBBED * shares.get(stroke.name, 1.0) * load[1], rel=1e-3)
+        told = [finding.sentence for finding in report.findings if "rolls the part over" in finding.sentence]
+        assert len(told) == (stroke.name in shares)
+        assert all(f"for {100 * shares[stroke.name]:.0f} % of the friction" in sentence for sentence in told)
+
+
+@pytest.mark.slow
+def test_it_is_in_equilibrium(rolled):
+    _, state = rolled
+    for report in state.reports:
+        along = np.array([force[0] for force in report.forces.values()])
+        assert abs(along.sum()) < 1e-6 * np.abs(along).max()
+
+
+@pytest.mark.slow
+def test_a_resumed_run_has_the_same_friction(rolled):
+    scene, state = rolled
+    again = State.from_data(state.to_data(), scene)
+    assert again.stage.friction_shares == state.stage.friction_shares
+    for stroke in scene.program.cycle:
+        assert again.stage.stroke_loads(stroke) == state.stage.stroke_loads(stroke)
