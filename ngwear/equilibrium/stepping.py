@@ -113,9 +113,9 @@ def advance(
     last = vector.CreateVector()
     rate = vector.CreateVector()
     last.data = vector
-    have_rate = False
-    moves = any(start[name] != target[name] for name in target)
-    done, step, work = 0.0, options.first if moves else 1.0, Work()
+    have_rate = stands = False
+    changes = any(start[name] != target[name] for name in target)
+    done, step, work = 0.0, options.first if changes else 1.0, Work()
     loose = options.newton.tolerance * LOOSER
     on_the_way = replace(options, newton=replace(options.newton, tolerance=loose))
     if any(term.remembers for term in problem.terms):
@@ -132,13 +132,15 @@ def advance(
         # With an imbalance load the fluid front stays: moving it would change that load.
         update = IMBALANCE not in target or goal == 1.0
         here = options if goal == 1.0 else on_the_way
-        here = replace(here, newton=replace(here.newton, moves=step <= SHORT))
+        moves = step <= SHORT and (not stands or step < 2 * options.smallest)
+        here = replace(here, newton=replace(here.newton, moves=moves))
         gradually = step <= SHORT  # a longer one is halved first
         report = settle(problem, here, work, update=update, gradually=gradually)
         if have_rate and not report.converged and report.outcome is Outcome.BAD_START:
             vector.data = last
             report = settle(problem, here, work, update=update, gradually=gradually)
         if not report.converged:
+            stands |= moves  # that takes long: once more on the shortest step
             vector.data = last
             have_rate = False
             step /= 2

@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 
-from ngwear.equilibrium.newton import Outcome
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.equilibrium.problem import Loads
 from ngwear.equilibrium.stepping import StepOptions, Work, advance
 from ngwear.errors import ConvergenceError
+from ngwear.loop.finer_mesh import advance_on_finer
 from ngwear.loop.stage import Stage
+from ngwear.loop.state import State
 
+Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 BELOW = 0.9  # of the friction from which on the part rolls over: wear and a new mesh move that by some per cent
@@ -20,6 +27,24 @@ NEAREST = 1 / 16  # of the friction's limit: how near to rolling the state is se
 def is_rolling(error: ConvergenceError) -> bool:
     """Whether load steps have failed because friction rolls the part over."""
     return error.report is not None and error.report.outcome is Outcome.ROLLED
+
+
+def advance_while_sliding(
+    state: State,
+    stroke: str,
+    target: Loads,
+    options: StepOptions,
+    *,
+    begin: Array,
+    on_step: Callable[[float, Report], None] | None = None,
+) -> Work:
+    """As ``advance_on_finer``; where friction rolls the part over, ``hold_short_of_rolling``."""
+    try:
+        return advance_on_finer(state, target, options, begin=begin, on_step=on_step)
+    except ConvergenceError as error:
+        if not is_rolling(error):
+            raise
+        return hold_short_of_rolling(state.stage, stroke, target, error)
 
 
 def hold_short_of_rolling(stage: Stage, stroke: str, target: Loads, error: ConvergenceError) -> Work:

@@ -35,7 +35,7 @@ from ngwear.loop.mounting import (
 )
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
-from ngwear.loop.rolling import hold_short_of_rolling, is_rolling
+from ngwear.loop.rolling import advance_while_sliding
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.stroke_report import stroke_report
@@ -149,18 +149,13 @@ class Stepper:
             on_step = recorder(stage.problem, path)
             loads = stage.stroke_loads(stroke)
             options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
-            try:
-                work = advance_on_finer(state, loads, options, begin=begin, on_step=on_step)
-            except ConvergenceError as error:
-                if not is_rolling(error):
-                    raise
-                work = hold_short_of_rolling(state.stage, stroke.name, loads, error)
+            work = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
             stage = state.stage
             state.work.add(work)
             needed = i > 0 and work.retries > 0 and stage.has_stick_slip and self.scene.deactivation is None
             needed &= state.halved == halved  # the way on another mesh is of no use
-            vector = stage.problem.state.vec.FV().NumPy().copy()
             path = path if needed else []
+            vector = stage.problem.state.vec.FV().NumPy().copy()
             state.phases.append(Phase(vector, path=path, passed=stage.fluid_passed(), left=stage.fluid_left()))
             on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
 
@@ -190,17 +185,28 @@ class Stepper:
                 levels += 1
                 continue
             remesh(state, scene=scene if floats else None)
+            self._settle_on_new_mesh(state)
+            self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
+        state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
+
+    def _settle_on_new_mesh(self, state: State) -> None:
+        """Settle the cycle from the states carried over, or mount anew: where friction sticks, before load steps."""
+        carried, sticks = state.saved(), bool(state.stage.floats) and state.stage.has_stick_slip
+        try:
+            self._settle_cycle(state, at_once=sticks)
+        except ConvergenceError as error:
+            if not state.stage.floats:
+                raise
+            log.info("%s: mounting anew on this mesh", error)
             try:
-                self._settle_cycle(state, at_once=floats)  # mounting anew takes less time than load steps
-            except ConvergenceError as error:
-                if not floats:
-                    raise
-                log.info("%s: mounting anew on this mesh", error)
                 state.stage.problem.state.vec[:] = 0.0
                 self._first_cycle(state, lambda fraction: None)
                 self._settle_cycle(state)
-            self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
-        state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
+            except ConvergenceError:
+                if not sticks:
+                    raise
+                state.restore(carried)
+                self._settle_cycle(state)
 
     def _resolves(self, state: State) -> bool:
         """Settle the cycle on finer elements where the last solves ask for them; False if none do, or it fails."""

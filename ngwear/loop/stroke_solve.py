@@ -124,8 +124,8 @@ def _solves(state: State, guess: Array, work: Work) -> Report:
     _set_guess(state, guess)
     for term in state.stage.problem.terms:
         term.refresh()
-    at_once = StepOptions(newton=NewtonOptions(rounds=False))  # load steps take less time
-    return settle(state.stage.problem, at_once, work)
+    options = NewtonOptions(rounds=not state.stage.has_stick_slip)  # with stick, load steps take less time
+    return settle(state.stage.problem, StepOptions(newton=options), work)
 
 
 def _by_steps(
