@@ -211,6 +211,7 @@ class State:
         return {
             "stage": self.stage,
             "contour": self.contour,
+            "friction_shares": dict(self.stage.friction_shares),
             "phases": [replace(p) for p in self.phases],
             "strokes": self.strokes,
             "memory": copy(self.memory),
@@ -228,8 +229,9 @@ class State:
     def restore(self, saved: dict[str, Any]) -> None:
         """Restore the state before a rejected step, and count the retry."""
         self.work.retries += 1
-        contour = saved.pop("contour")
+        contour, shares = saved.pop("contour"), saved.pop("friction_shares")
         self.__dict__.update(saved)
+        self.stage.friction_shares = shares
         self.stage.body.move_to(contour)
 
     @property

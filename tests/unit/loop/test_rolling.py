@@ -15,6 +15,7 @@ from ngwear.loop.solution_checks import findings
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
+from ngwear.wear.jump_control import JumpControl
 
 RUBBED, SMOOTH = 0.4, 0.05  # friction of the rod, and of all that could stop the ring from turning
 
@@ -54,6 +55,14 @@ def test_it_is_a_finding_of_that_stroke_alone(stage):
     ]
     assert [len(sentences) for sentences in told] == [1, 0]
     assert "stroke 'outward': friction rolls the part over; the results are for 50 % of the friction" in told[0][0]
+
+
+def test_a_step_that_is_rejected_leaves_the_shares_as_they_were(stage):
+    state = State(stage, [], JumpControl(0.01, depth=0.01, cycles=1, longest=1))
+    saved, before = state.saved(), dict(stage.friction_shares)
+    stage.friction_shares.clear()
+    state.restore(saved)
+    assert state.stage.friction_shares == before != {}
 
 
 def test_without_friction_to_lower_the_part_is_given_up(stage):
