@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import ngsolve as ng
 import numpy as np
@@ -12,6 +12,9 @@ from ngwear.effects.contact import OutlineContact
 from ngwear.effects.rigid_motion import RigidMotion
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
+
+if TYPE_CHECKING:  # imported only if there is friction
+    from ngwear.effects.friction import Friction
 
 # Above what rounding leaves, far below what any support or contact brings; checked by ``tests/stability`` (sealing.py).
 FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by one, below which nothing holds it
@@ -101,29 +104,41 @@ def rolls(problem: Problem) -> bool:
     return any(isinstance(term, RigidMotion) for term in problem.terms) and abs(problem.turned()) >= ROLLS
 
 
-def _unstable_surface(problem: Problem) -> str:
-    """Friction that compresses the surface until it creases, or makes waves grow along it."""
-    from ngwear.effects.friction import Friction, FullSliding
+def creases(problem: Problem, stretch: float = CREASING) -> bool:
+    """Whether the surface of a contact with friction is compressed to about this stretch, or more [-]."""
+    return any(contact.least_stretch()[0] <= NEAR * stretch for contact, _ in _rubbed(problem))
+
+
+def _rubbed(problem: Problem) -> list[tuple[OutlineContact, Friction]]:
+    """The loaded contacts with friction along an outline."""
+    from ngwear.effects.friction import Friction
 
     found = []
     for term in problem.terms:
         if isinstance(term, Friction) and isinstance(term.contact, OutlineContact) and term.contact.peak() > 0:
-            contact = term.contact
-            slip = abs(term.slip.Get()) if isinstance(term, FullSliding) else 1.0
-            cause = (
-                f"friction of {slip * term.mean():.3g} under p/G = {contact.peak() / contact.modulus:.2g} at contact "
+            found.append((term.contact, term))
+    return found
+
+
+def _unstable_surface(problem: Problem) -> str:
+    """Friction that compresses the surface until it creases, or makes waves grow along it."""
+    from ngwear.effects.friction import FullSliding
+
+    found = []
+    for contact, term in _rubbed(problem):
+        slip = abs(term.slip.Get()) if isinstance(term, FullSliding) else 1.0
+        cause = f"friction of {slip * term.mean():.3g} under p/G = {contact.peak() / contact.modulus:.2g} at contact "
+        cause += f"'{contact.name}' "
+        least, place = contact.least_stretch()
+        if least <= NEAR * CREASING:
+            at = ", ".join(f"{x:.4g}" for x in place)
+            found.append(
+                f"{cause}compresses the surface at ({at}) to {least:.2g} of its length; it creases from {CREASING} "
+                f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: {REMEDIES}"
             )
-            cause += f"'{contact.name}' "
-            least, place = contact.least_stretch()
-            if least <= NEAR * CREASING:
-                at = ", ".join(f"{x:.4g}" for x in place)
-                found.append(
-                    f"{cause}compresses the surface at ({at}) to {least:.2g} of its length; it creases from {CREASING} "
-                    f"and wrinkles at {WRINKLING}, beyond which no smooth equilibrium is left: {REMEDIES}"
-                )
-            elif isinstance(term, FullSliding) and term.margin() < 0:
-                found.append(
-                    f"{cause}is more than steady sliding bears: waves grow along the surface as they run (margin "
-                    f"{term.margin():.2g}): {REMEDIES}"
-                )
+        elif isinstance(term, FullSliding) and term.margin() < 0:
+            found.append(
+                f"{cause}is more than steady sliding bears: waves grow along the surface as they run (margin "
+                f"{term.margin():.2g}): {REMEDIES}"
+            )
     return "; ".join(found)

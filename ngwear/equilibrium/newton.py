@@ -24,6 +24,7 @@ class Outcome(enum.Enum):
     SINGULAR = "the tangent is singular: is the body held, and does every force-controlled surface touch it?"
     STALLED = "the corrections do not shrink: take smaller load steps"
     ROLLED = "the part rolls over on the way to another equilibrium"
+    CREASED = "friction creases the surface on the way to an equilibrium"
     BAD_START = "the start state has inverted elements: start from a state closer to the solution"
 
 

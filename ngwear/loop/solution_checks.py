@@ -28,6 +28,12 @@ COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node
 ALTERNATES = 4  # nodes in a row whose second difference changes sign: a smooth pressure does so once or twice
 UNBALANCED = 1e-5  # of the largest force: sum of all forces where no support takes a part of it
+CONSEQUENCES = {
+    "rolls the part over": "Rolling, it slides less than the travel and wears less; lower the friction where it "
+    "slides, or give it less room along the axis",
+    "creases the surface": "Creased, it slides in waves, or tears, and the friction is lower than the law's; lower the "
+    "friction or the load, or take a stiffer rubber",
+}
 CRUSHED = 0.5  # J of an element; rubber bears far less compression
 
 
@@ -67,7 +73,7 @@ def findings(
         *_crushed(stage),
         *_covered_inlets(stage, stroke),
         *_blow_by(stage, stroke),
-        *_rolls(stage, stroke),
+        *_lower_friction(stage, stroke),
     ]
     for name, profile in profiles.items():
         found += _zigzag(name, profile)
@@ -185,14 +191,13 @@ def _covered_inlets(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
             yield Finding(f"inlet {stroke.name} {name}", pressure, sentence)
 
 
-def _rolls(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
-    """Friction that rolls the part over, so that only a share of it acts in this solve."""
-    share = stage.friction_shares.get(stroke.name, 1.0)
+def _lower_friction(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
+    """Friction that the part does not bear, so that only a share of it acts in this solve."""
+    share, why = stage.friction_shares.get(stroke.name, (1.0, ""))
     if share < 1:
-        sentence = f"stroke '{stroke.name}': friction rolls the part over; the results are for {100 * share:.0f} % of "
-        sentence += "the friction, with which it still slides. Rolling, it slides less than the travel and wears less; "
-        sentence += "lower the friction where it slides, or give it less room along the axis"
-        yield Finding(f"rolls {stroke.name}", 1 - share, sentence)
+        sentence = f"stroke '{stroke.name}': friction {why}; the results are for {100 * share:.0f} % of the friction, "
+        sentence += f"with which it still slides. {CONSEQUENCES[why]}"
+        yield Finding(f"less friction {stroke.name}", 1 - share, sentence)
 
 
 def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:

@@ -49,8 +49,9 @@ class Stage:
         Components of the displacement in which nothing holds the part (``ngwear.scene.holding``).
     memory : StrokeMemory or None
     problem : Problem
-    friction_shares : dict of str to float
-        Share of the friction in full sliding that acts in a stroke; 1 if it is not named (``ngwear.loop.rolling``).
+    friction_shares : dict of str to tuple of float and str
+        Share of the friction in full sliding that acts in a stroke, and what more of it does to the part; a stroke
+        that is not named has all of it (``ngwear.loop.bearable_friction``).
 
     ``background`` is the mesh on which the viscoelastic memory is stored; None, as during mounting: no memory.
     """
@@ -60,7 +61,7 @@ class Stage:
         scene: Scene,
         body: MeshedSection,
         background: Background | None = None,
-        friction_shares: dict[str, float] | None = None,
+        friction_shares: dict[str, tuple[float, str]] | None = None,
     ) -> None:
         self.scene, self.body, self.friction_shares = scene, body, dict(friction_shares or {})
         rubber = scene.rubber
@@ -159,7 +160,8 @@ class Stage:
             loads |= dict.fromkeys(contact.loads, 0.0 if spec.force is None else spec.force)
             if spec.name in self.frictions:
                 friction = self.frictions[spec.name]
-                way = stroke.travel if friction.remembers else self.friction_shares.get(stroke.name, 1.0)
+                share, _ = self.friction_shares.get(stroke.name, (1.0, ""))
+                way = stroke.travel if friction.remembers else share
                 loads |= dict.fromkeys(friction.loads, stroke.direction * way if spec.slides else 0.0)
         for name, fluid in self.fluids.items():
             loads |= dict.fromkeys(fluid.loads, stroke.pressure_at(name))

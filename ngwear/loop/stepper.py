@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from ngwear.equilibrium.stepping import StepOptions
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
+from ngwear.loop.bearable_friction import advance_while_sliding
 from ngwear.loop.element_sizes import coarse_for_mounting, with_contact_lengths, with_mounting_lengths, with_patch
 from ngwear.loop.finer_mesh import (
     advance_on_finer,
@@ -35,7 +36,6 @@ from ngwear.loop.mounting import (
 )
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
-from ngwear.loop.rolling import advance_while_sliding
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State, StrokeReport
 from ngwear.loop.stroke_report import stroke_report
@@ -135,7 +135,6 @@ class Stepper:
         """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
         cycle, begin = self.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
         state.phases = []
-        state.stage.friction_shares.clear()
         state.stage.leave_fluid(np.empty((0, 3)))
         state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
         if self._lost_elements is not None:
