@@ -125,7 +125,11 @@ def lower_friction(
     held *= BELOW
     if held <= 0:
         raise error
-    work.add(advance(problem, {name: held * slip for name, slip in slips.items()}, StepOptions(first=0.5)))
+    less = {name: held * slip for name, slip in slips.items()}
+    try:
+        work.add(advance(problem, less, StepOptions(first=0.5, smallest=SMALLEST)))
+    except ConvergenceError:  # a surface that has creased does not come back by itself
+        work.add(_with_less_friction(stage, target, less, start))
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
     stage.friction_shares[stroke] = (held * before, why)
     log.info("stroke '%s': friction %s; %.0f %% of it act", stroke, why, 100 * held * before)

@@ -1,4 +1,4 @@
-"""A ring that friction rolls over: solved with as much of the friction as it bears, and said."""
+"""A part that friction rolls over, or whose surface it creases: solved with the friction that it bears, and said."""
 
 from dataclasses import replace
 
@@ -10,7 +10,7 @@ from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError
 from ngwear.loop.bearable_friction import BELOW, is_too_much, lower_friction
 from ngwear.loop.element_sizes import coarse_for_mounting, with_mounting_lengths
-from ngwear.loop.mounting import unworn_body
+from ngwear.loop.mounting import mount, unworn_body
 from ngwear.loop.solution_checks import findings
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
@@ -55,6 +55,30 @@ def test_it_is_a_finding_of_that_stroke_alone(stage):
     ]
     assert [len(sentences) for sentences in told] == [1, 0]
     assert "stroke 'outward': friction rolls the part over; the results are for 50 % of the friction" in told[0][0]
+
+
+def test_a_crease_is_told_as_such(stage):
+    stage.friction_shares["inward"] = (0.25, "creases the surface")
+    try:
+        stroke = stage.scene.program.cycle[1]
+        told = [f.sentence for f in findings(stage, {}, {}, stroke, worn=False) if f.key.startswith("less friction")]
+    finally:
+        del stage.friction_shares["inward"]
+    assert "stroke 'inward': friction creases the surface; the results are for 25 % of the friction" in told[0]
+
+
+def test_friction_that_the_part_bears_is_brought_on_again():
+    scene = coarse_for_mounting(with_mounting_lengths(nw.read_scene("geometries/o_ring/scene.toml")))
+    scene = replace(scene, contacts=tuple(replace(c, friction=0.02) for c in scene.contacts))
+    stage = Stage(scene, unworn_body(scene, 6.0))
+    mount(stage, lambda fraction: None)
+    target = stage.stroke_loads(scene.program.cycle[0])
+    work = lower_friction(stage, "outward", target, ConvergenceError("no equilibrium", Report(Outcome.CREASED)))
+    assert work.solves > 0
+    assert stage.friction_shares == {}
+    assert stage.problem.get_loads()["rod slip"] == target["rod slip"]
+    friction, load = np.abs(stage.forces()["rod friction"]), np.abs(stage.forces()["rod"])
+    assert friction[0] == pytest.approx(0.02 * load[1], rel=1e-3)
 
 
 def test_a_step_that_is_rejected_leaves_the_shares_as_they_were(stage):
