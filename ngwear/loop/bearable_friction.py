@@ -5,16 +5,18 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.equilibrium.diagnosis import WRINKLING, creases
 from ngwear.equilibrium.newton import Outcome, Report
-from ngwear.equilibrium.problem import Loads
+from ngwear.equilibrium.problem import Loads, Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance
 from ngwear.errors import ConvergenceError
 from ngwear.loop.finer_mesh import advance_on_finer
+from ngwear.loop.solution_checks import CRUSHED
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 
@@ -34,6 +36,16 @@ def is_too_much(error: ConvergenceError) -> bool:
     return error.report is not None and error.report.outcome in WHY
 
 
+def takes_less(stage: Stage, stroke: str, error: ConvergenceError) -> bool:
+    """Lower the friction of a stroke for the next solve, if the part does not bear it any more; False if it is not."""
+    share, _ = stage.friction_shares.get(stroke, (1.0, ""))
+    if not (stage.floats and stage.sliding and error.report is not None and is_too_much(error)):
+        return False
+    stage.friction_shares[stroke] = (BELOW * share, WHY[error.report.outcome])
+    log.info("stroke '%s': %.0f %% of the friction act", stroke, 100 * BELOW * share)
+    return True
+
+
 def advance_while_sliding(
     state: State,
     stroke: str,
@@ -43,15 +55,35 @@ def advance_while_sliding(
     begin: Array,
     on_step: Callable[[float, Report], None] | None = None,
 ) -> Work:
-    """As ``advance_on_finer``; where the part does not bear the friction, ``lower_friction``."""
+    """As ``advance_on_finer``; where the part does not bear the friction, ``lower_friction``.
+
+    Coarse elements bear more than the rubber: an equilibrium with a crushed element does not count, if there is one
+    without, with less friction.
+    """
     stage, start = state.stage, _Start.of(state.stage)
     try:
-        return advance_on_finer(state, target, options, begin=begin, on_step=on_step)
+        work = advance_on_finer(state, target, options, begin=begin, on_step=on_step)
     except ConvergenceError as error:
         if not is_too_much(error):
             raise
         # On another mesh the beginning of the stroke is not known.
         return lower_friction(state.stage, stroke, target, error, start if state.stage is stage else None)
+    if state.stage is stage and stage.floats and stage.sliding and _is_crushed(stage.problem):
+        end = _Start.of(stage)
+        try:
+            crushed = ConvergenceError("a crushed element", Report(Outcome.CREASED))
+            work.add(lower_friction(stage, stroke, target, crushed, start, must_not=_is_crushed))
+        except ConvergenceError:
+            end.restore(stage)
+    return work
+
+
+def _never(problem: Problem) -> bool:
+    return False
+
+
+def _is_crushed(problem: Problem) -> bool:
+    return bool(problem.jacobians().min() < CRUSHED)
 
 
 @dataclass(frozen=True)
@@ -81,12 +113,19 @@ class _Start:
 
 
 def lower_friction(
-    stage: Stage, stroke: str, target: Loads, error: ConvergenceError, start: _Start | None = None
+    stage: Stage,
+    stroke: str,
+    target: Loads,
+    error: ConvergenceError,
+    start: _Start | None = None,
+    *,
+    must_not: Callable[[Problem], bool] | None = None,
 ) -> Work:
     """Bring on a stroke's loads with less friction, and then friction as long as the part slides with it.
 
     From the beginning of the stroke, if it is given, else from the last equilibrium. The stage's ``friction_shares``
-    then has the share of friction that acts in this stroke, and what more of it does.
+    then has the share of friction that acts in this stroke, and what more of it does. ``must_not`` says of a state
+    whether the friction is too much, though it is an equilibrium.
 
     Raises
     ------
@@ -99,7 +138,8 @@ def lower_friction(
         raise error
     reached = min(max(0.0, now[name] / slip) for name, slip in slips.items())
     why = WHY[error.report.outcome] if error.report is not None else ""
-    work, looks, held, goal = Work(), False, 0.0, 0.0
+    work, held, goal = Work(), 0.0, 0.0
+    over = must_not or (partial(creases, stretch=WRINKLING) if why == CREASES else _never)
     for share in LOWER:
         goal = share * reached
         try:
@@ -108,11 +148,13 @@ def lower_friction(
             if share == LOWER[-1]:
                 raise error from None
             continue
-        # Coarse elements bear more than the surface: it must not wrinkle, unless the squeeze alone does that.
-        looks = why == CREASES and not creases(problem, WRINKLING)
-        if looks or why != CREASES:
+        if not over(problem):
             break
-    while not (looks and creases(problem, WRINKLING)):
+    else:
+        if must_not is not None:
+            raise error
+        over = _never  # the squeeze alone wrinkles it
+    while not over(problem):
         held = goal
         if held == 1.0:
             return work

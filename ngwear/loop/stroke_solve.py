@@ -14,6 +14,7 @@ from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError
+from ngwear.loop.bearable_friction import takes_less
 from ngwear.loop.state import State
 from ngwear.scene.program import Stroke
 from ngwear.wear.cycle_jumps import Plan
@@ -24,6 +25,7 @@ log = logging.getLogger(__name__)
 
 EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is the pressure that a pocket keeps
 # Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
+LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
 
@@ -134,7 +136,8 @@ def _by_steps(
     """Solve a stroke in load steps; return ``Phase.path`` and ``Phase.fewest``.
 
     The search ends at a larger load step if it is ``hard``: after a jump, because fewer strokes in one solve are
-    easier, and on the first meshes of a part with room to move, because mounting it anew is.
+    easier, and on the first meshes of a part with room to move, because mounting it anew is. Else a stroke whose
+    friction the part does not bear, as the wear has changed it, is solved with less of it.
 
     Raises
     ------
@@ -142,16 +145,22 @@ def _by_steps(
         If a load step fails.
     """
     options = StepOptions(first=0.25, smallest=HARDEST if hard else StepOptions.smallest)
-    try:
-        if state.phases[index].path:
-            return _follow(state, index, stroke, work, options)
-        return _approach(state, index, stroke, work, options), False
-    except ConvergenceError as error:
-        raise ConvergenceError(
-            f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}",
-            error.report,
-            cause=error.cause,
-        ) from None
+    lowered = 0
+    while True:
+        try:
+            if state.phases[index].path:
+                return _follow(state, index, stroke, work, options)
+            return _approach(state, index, stroke, work, options), False
+        except ConvergenceError as error:
+            if not hard and lowered < LOWERED and takes_less(state.stage, stroke.name, error):
+                lowered += 1
+                state.stage.problem.set_loads(state.stage.stroke_loads(stroke))
+                continue
+            raise ConvergenceError(
+                f"no equilibrium in the {stroke.name} stroke after stroke {state.strokes}: {error}",
+                error.report,
+                cause=error.cause,
+            ) from None
 
 
 def _set_guess(state: State, vector: Array) -> None:
