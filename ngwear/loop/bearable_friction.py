@@ -54,8 +54,10 @@ def advance_while_sliding(
     *,
     begin: Array,
     on_step: Callable[[float, Report], None] | None = None,
-) -> Work:
+) -> tuple[Work, bool]:
     """As ``advance_on_finer``; where the part does not bear the friction, ``lower_friction``.
+
+    Returns the work, and whether the whole way was that of ``on_step``.
 
     Coarse elements bear more than the rubber: an equilibrium with a crushed element does not count, if there is one
     without, with less friction.
@@ -67,15 +69,17 @@ def advance_while_sliding(
         if not is_too_much(error):
             raise
         # On another mesh the beginning of the stroke is not known.
-        return lower_friction(state.stage, stroke, target, error, start if state.stage is stage else None)
+        return lower_friction(state.stage, stroke, target, error, start if state.stage is stage else None), False
+    whole = True
     if state.stage is stage and stage.floats and stage.sliding and _is_crushed(stage.problem):
         end = _Start.of(stage)
         try:
             crushed = ConvergenceError("a crushed element", Report(Outcome.CREASED))
             work.add(lower_friction(stage, stroke, target, crushed, start, must_not=_is_crushed))
+            whole = False
         except ConvergenceError:
             end.restore(stage)
-    return work
+    return work, whole
 
 
 def _never(problem: Problem) -> bool:

@@ -148,11 +148,11 @@ class Stepper:
             on_step = recorder(stage.problem, path)
             loads = stage.stroke_loads(stroke)
             options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
-            work = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
+            work, whole = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
             stage = state.stage
             state.work.add(work)
             needed = i > 0 and work.retries > 0 and stage.has_stick_slip and self.scene.deactivation is None
-            needed &= state.halved == halved  # the way on another mesh is of no use
+            needed &= whole and state.halved == halved  # the way with other friction, or on another mesh, is of no use
             path = path if needed else []
             vector = stage.problem.state.vec.FV().NumPy().copy()
             state.phases.append(Phase(vector, path=path, passed=stage.fluid_passed(), left=stage.fluid_left()))
