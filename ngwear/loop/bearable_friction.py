@@ -14,7 +14,7 @@ from ngwear.equilibrium.diagnosis import WRINKLING, creases
 from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.equilibrium.problem import Loads, Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance
-from ngwear.errors import ConvergenceError
+from ngwear.errors import ConvergenceError, MeshError
 from ngwear.loop.finer_mesh import advance_on_finer
 from ngwear.loop.solution_checks import CRUSHED
 from ngwear.loop.stage import Stage
@@ -28,20 +28,27 @@ LOWER = (0.5, 0.25, 0.0)  # times the friction that it did not bear on the way t
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
 NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched
 ROLLS, CREASES = "rolls the part over", "creases the surface"
+NO_STATE = "leaves the part no equilibrium that load steps reach"
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
+
+
+def reason(error: ConvergenceError | MeshError) -> str:
+    """What friction does that a part does not bear, from how load steps with it have failed."""
+    report = error.report if isinstance(error, ConvergenceError) else None
+    return NO_STATE if report is None else WHY.get(report.outcome, NO_STATE)
 
 
 def is_too_much(error: ConvergenceError) -> bool:
     """Whether load steps have failed because friction rolls the part over, or creases its surface."""
-    return error.report is not None and error.report.outcome in WHY
+    return reason(error) != NO_STATE
 
 
 def takes_less(stage: Stage, stroke: str, error: ConvergenceError) -> bool:
     """Lower the friction of a stroke for the next solve, if the part does not bear it any more; False if it is not."""
     share, _ = stage.friction_shares.get(stroke, (1.0, ""))
-    if not (stage.floats and stage.sliding and error.report is not None and is_too_much(error)):
+    if not (stage.floats and stage.sliding and is_too_much(error)):
         return False
-    stage.friction_shares[stroke] = (BELOW * share, WHY[error.report.outcome])
+    stage.friction_shares[stroke] = (BELOW * share, reason(error))
     log.info("stroke '%s': %.0f %% of the friction act", stroke, 100 * BELOW * share)
     return True
 
@@ -62,17 +69,18 @@ def advance_while_sliding(
     Coarse elements bear more than the rubber: an equilibrium with a crushed element does not count, if there is one
     without, with less friction.
     """
-    stage, start = state.stage, _Start.of(state.stage)
+    stage, start, saved = state.stage, Start.of(state.stage), state.saved()
     try:
         work = advance_on_finer(state, target, options, begin=begin, on_step=on_step)
-    except ConvergenceError as error:
-        if not is_too_much(error):
+    except (ConvergenceError, MeshError) as error:
+        if not stage.floats or not stage.sliding:
             raise
-        # On another mesh the beginning of the stroke is not known.
-        return lower_friction(state.stage, stroke, target, error, start if state.stage is stage else None), False
+        if state.stage is not stage:
+            state.restore(saved)
+        return lower_friction(stage, stroke, target, error, start), False
     whole = True
     if state.stage is stage and stage.floats and stage.sliding and _is_crushed(stage.problem):
-        end = _Start.of(stage)
+        end = Start.of(stage)
         try:
             crushed = ConvergenceError("a crushed element", Report(Outcome.CREASED))
             work.add(lower_friction(stage, stroke, target, crushed, start, must_not=_is_crushed))
@@ -91,7 +99,7 @@ def _is_crushed(problem: Problem) -> bool:
 
 
 @dataclass(frozen=True)
-class _Start:
+class Start:
     """The beginning of a stroke: equilibrium, loads, and what the fluids have done."""
 
     vector: Array
@@ -100,7 +108,7 @@ class _Start:
     left: Array | None
 
     @classmethod
-    def of(cls, stage: Stage) -> _Start:
+    def of(cls, stage: Stage) -> Start:
         """The present state."""
         vector = stage.problem.state.vec.FV().NumPy().copy()
         return cls(vector, stage.problem.get_loads(), stage.fluid_passed(), stage.fluid_left())
@@ -120,16 +128,15 @@ def lower_friction(
     stage: Stage,
     stroke: str,
     target: Loads,
-    error: ConvergenceError,
-    start: _Start | None = None,
+    error: ConvergenceError | MeshError,
+    start: Start,
     *,
     must_not: Callable[[Problem], bool] | None = None,
 ) -> Work:
-    """Bring on a stroke's loads with less friction, and then friction as long as the part slides with it.
+    """Bring on a stroke's loads from its beginning with less friction, and then friction as long as the part slides.
 
-    From the beginning of the stroke, if it is given, else from the last equilibrium. The stage's ``friction_shares``
-    then has the share of friction that acts in this stroke, and what more of it does. ``must_not`` says of a state
-    whether the friction is too much, though it is an equilibrium.
+    The stage's ``friction_shares`` then has the share of friction that acts in this stroke, and what more of it does.
+    ``must_not`` says of a state whether the friction is too much, though it is an equilibrium.
 
     Raises
     ------
@@ -141,7 +148,7 @@ def lower_friction(
     if not slips:
         raise error
     reached = min(max(0.0, now[name] / slip) for name, slip in slips.items())
-    why = WHY[error.report.outcome] if error.report is not None else ""
+    why = reason(error)
     work, held, goal = Work(), 0.0, 0.0
     over = must_not or (partial(creases, stretch=WRINKLING) if why == CREASES else _never)
     for share in LOWER:
@@ -182,12 +189,7 @@ def lower_friction(
     return work
 
 
-def _with_less_friction(stage: Stage, target: Loads, slips: Loads, start: _Start | None) -> Work:
-    """Bring on a stroke's loads, with these of friction in place of its own."""
-    options, lower = StepOptions(first=FIRST, smallest=SMALLEST), {**target, **slips}
-    if start is not None:
-        start.restore(stage)
-        return advance(stage.problem, lower, options)
-    work = advance(stage.problem, slips, options)
-    work.add(advance(stage.problem, lower, options))
-    return work
+def _with_less_friction(stage: Stage, target: Loads, slips: Loads, start: Start) -> Work:
+    """Bring on a stroke's loads from its beginning, with these of friction in place of its own."""
+    start.restore(stage)
+    return advance(stage.problem, {**target, **slips}, StepOptions(first=FIRST, smallest=SMALLEST))

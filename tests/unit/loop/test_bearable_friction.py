@@ -8,7 +8,7 @@ import pytest
 import ngwear as nw
 from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError
-from ngwear.loop.bearable_friction import BELOW, is_too_much, lower_friction
+from ngwear.loop.bearable_friction import BELOW, Start, is_too_much, lower_friction
 from ngwear.loop.element_sizes import coarse_for_mounting, with_mounting_lengths
 from ngwear.loop.mounting import mount, unworn_body
 from ngwear.loop.solution_checks import findings
@@ -72,8 +72,8 @@ def test_friction_that_the_part_bears_is_brought_on_again():
     scene = replace(scene, contacts=tuple(replace(c, friction=0.02) for c in scene.contacts))
     stage = Stage(scene, unworn_body(scene, 6.0))
     mount(stage, lambda fraction: None)
-    target = stage.stroke_loads(scene.program.cycle[0])
-    work = lower_friction(stage, "outward", target, ConvergenceError("no equilibrium", Report(Outcome.CREASED)))
+    target, creased = stage.stroke_loads(scene.program.cycle[0]), ConvergenceError("none", Report(Outcome.CREASED))
+    work = lower_friction(stage, "outward", target, creased, Start.of(stage))
     assert work.solves > 0
     assert stage.friction_shares == {}
     assert stage.problem.get_loads()["rod slip"] == target["rod slip"]
@@ -95,7 +95,7 @@ def test_without_friction_to_lower_the_part_is_given_up(stage):
     assert not is_too_much(ConvergenceError("no equilibrium", Report(Outcome.STALLED)))
     target = stage.stroke_loads(stage.scene.program.cycle[0]) | {"rod slip": 0.0}
     with pytest.raises(ConvergenceError, match="no equilibrium"):
-        lower_friction(stage, "outward", target, error)
+        lower_friction(stage, "outward", target, error, Start.of(stage))
 
 
 @pytest.mark.slow
