@@ -28,6 +28,7 @@ LOWER = (0.5, 0.25, 0.0)  # times the friction that it did not bear on the way t
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
 NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched
 ROLLS, CREASES = "rolls the part over", "creases the surface"
+CRUSHES = "crushes elements"
 NO_STATE = "leaves the part no equilibrium that load steps reach"
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
 
@@ -82,7 +83,7 @@ def advance_while_sliding(
     if state.stage is stage and stage.floats and stage.sliding and _is_crushed(stage.problem):
         end = Start.of(stage)
         try:
-            crushed = ConvergenceError("a crushed element", Report(Outcome.CREASED))
+            crushed = ConvergenceError("a crushed element")
             work.add(lower_friction(stage, stroke, target, crushed, start, must_not=_is_crushed))
             whole = False
         except ConvergenceError:
@@ -148,7 +149,7 @@ def lower_friction(
     if not slips:
         raise error
     reached = min(max(0.0, now[name] / slip) for name, slip in slips.items())
-    why = reason(error)
+    why = reason(error) if must_not is None else CRUSHES
     work, held, goal = Work(), 0.0, 0.0
     over = must_not or (partial(creases, stretch=WRINKLING) if why == CREASES else _never)
     for share in LOWER:

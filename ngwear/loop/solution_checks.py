@@ -33,6 +33,8 @@ CONSEQUENCES = {
     "slides, or give it less room along the axis",
     "creases the surface": "Creased, it slides in waves, or tears, and the friction is lower than the law's; lower the "
     "friction or the load, or take a stiffer rubber",
+    "crushes elements": "Where it does, the mesh does not resolve the section: take smaller elements, or lower the "
+    "friction or the load",
     "leaves the part no equilibrium that load steps reach": "Lower the friction or the load, or take a stiffer rubber",
 }
 CRUSHED = 0.5  # J of an element; rubber bears far less compression
