@@ -101,7 +101,12 @@ def _rigid_motions(problem: Problem) -> list[tuple[str, Array]]:
 
 def rolls(problem: Problem) -> bool:
     """Whether a part with room to move has been turned so far that it goes on rolling."""
-    return any(isinstance(term, RigidMotion) for term in problem.terms) and abs(problem.turned()) >= ROLLS
+    return has_room(problem) and abs(problem.turned()) >= ROLLS
+
+
+def has_room(problem: Problem) -> bool:
+    """Whether nothing holds the part in some direction."""
+    return any(isinstance(term, RigidMotion) for term in problem.terms)
 
 
 def creases(problem: Problem, stretch: float = CREASING) -> bool:

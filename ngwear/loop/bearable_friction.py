@@ -16,7 +16,7 @@ from ngwear.equilibrium.problem import Loads, Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance
 from ngwear.errors import ConvergenceError, MeshError
 from ngwear.loop.finer_mesh import advance_on_finer
-from ngwear.loop.solution_checks import CRUSHED
+from ngwear.loop.solution_checks import CREASES, CRUSHED, CRUSHES, NO_STATE, ROLLS
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 
@@ -26,10 +26,7 @@ log = logging.getLogger(__name__)
 BELOW = 0.9  # of the most friction that the part bears: wear and a new mesh move that by some per cent
 LOWER = (0.5, 0.25, 0.0)  # times the friction that it did not bear on the way there
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
-NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched
-ROLLS, CREASES = "rolls the part over", "creases the surface"
-CRUSHES = "crushes elements"
-NO_STATE = "leaves the part no equilibrium that load steps reach"
+NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched; less is none
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
 
 
@@ -47,7 +44,7 @@ def is_too_much(error: ConvergenceError) -> bool:
 def takes_less(stage: Stage, stroke: str, error: ConvergenceError) -> bool:
     """Lower the friction of a stroke for the next solve, if the part does not bear it any more; False if it is not."""
     share, _ = stage.friction_shares.get(stroke, (1.0, ""))
-    if not (stage.floats and stage.sliding and is_too_much(error)):
+    if not (stage.floats and stage.sliding and is_too_much(error)) or BELOW * share < NEAREST:
         return False
     stage.friction_shares[stroke] = (BELOW * share, reason(error))
     log.info("stroke '%s': %.0f %% of the friction act", stroke, 100 * BELOW * share)
@@ -88,6 +85,7 @@ def advance_while_sliding(
             whole = False
         except ConvergenceError:
             end.restore(stage)
+            stage.begin(start.vector)
     return work, whole
 
 
@@ -177,14 +175,14 @@ def lower_friction(
             log.info("%s", nearer)
             break
     held *= BELOW
-    if held <= 0:
+    before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
+    if held * before < NEAREST:
         raise error
     less = {name: held * slip for name, slip in slips.items()}
     try:
         work.add(advance(problem, less, StepOptions(first=0.5, smallest=SMALLEST)))
     except ConvergenceError:  # a surface that has creased does not come back by itself
         work.add(_with_less_friction(stage, target, less, start))
-    before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
     stage.friction_shares[stroke] = (held * before, why)
     log.info("stroke '%s': friction %s; %.0f %% of it act", stroke, why, 100 * held * before)
     return work

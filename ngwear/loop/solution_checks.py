@@ -28,14 +28,17 @@ COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node
 ALTERNATES = 4  # nodes in a row whose second difference changes sign: a smooth pressure does so once or twice
 UNBALANCED = 1e-5  # of the largest force: sum of all forces where no support takes a part of it
+# What friction does that a part does not bear, and what follows.
+ROLLS, CREASES, CRUSHES = "rolls the part over", "creases the surface", "crushes elements"
+NO_STATE = "leaves the part no equilibrium that load steps reach"
 CONSEQUENCES = {
-    "rolls the part over": "Rolling, it slides less than the travel and wears less; lower the friction where it "
+    ROLLS: "Rolling, it slides less than the travel and wears less; lower the friction where it "
     "slides, or give it less room along the axis",
-    "creases the surface": "Creased, it slides in waves, or tears, and the friction is lower than the law's; lower the "
+    CREASES: "Creased, it slides in waves, or tears, and the friction is lower than the law's; lower the "
     "friction or the load, or take a stiffer rubber",
-    "crushes elements": "Where it does, the mesh does not resolve the section: take smaller elements, or lower the "
+    CRUSHES: "Where it does, the mesh does not resolve the section: take smaller elements, or lower the "
     "friction or the load",
-    "leaves the part no equilibrium that load steps reach": "Lower the friction or the load, or take a stiffer rubber",
+    NO_STATE: "Lower the friction or the load, or take a stiffer rubber",
 }
 CRUSHED = 0.5  # J of an element; rubber bears far less compression
 
