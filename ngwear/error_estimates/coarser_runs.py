@@ -10,6 +10,8 @@ histories over the last half of the run are compared at the same strokes, by the
 Errors of mesh and jumps may cancel in one run and not in the next. So the error of the depth is never less than the
 embedded estimate of the wear steps.
 
+For parts with room to move, an error is at least that by elements of half the edges (``ngwear.loop.halved_elements``).
+
 With few elements across, the elements on a curved outline are finer than the setting asks for. With a single coarser
 run, its real ratio of element edges in contact is used, instead of two (``edge_ratio``).
 
@@ -44,7 +46,16 @@ from ngwear.loop.run import LocalDrawing
 from ngwear.loop.run import run as run_scene
 from ngwear.parallel.workers import Worker, of_modules
 from ngwear.results.kept_sections import KeptSections
-from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, LOST, PEAK, RUN_COLUMNS, element_edge, quantities
+from ngwear.results.quantities_of_interest import (
+    BY_TIME_STEP,
+    DEPTH,
+    LOST,
+    PEAK,
+    RUN_COLUMNS,
+    at_least_by_halved,
+    element_edge,
+    quantities,
+)
 from ngwear.results.recorder import TORN, Recorder, fingerprint
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.accuracy import LEAST_ACROSS, Tolerances
@@ -130,6 +141,7 @@ def combined_errors(
         out[name] = error + folded + prescribed.get(name, 0.0) + embedded.get(f"{name[:-4]} {BY_TIME_STEP}", 0.0)
     if DEPTH in levels and scene.wear.step == "jump":
         out[DEPTH] = max(out[DEPTH], steps.get(DEPTH, 0.0))
+    out |= at_least_by_halved(out)
     torn = embedded.get(TORN, 0.0)
     if LOST in levels:
         out[LOST] += torn

@@ -11,6 +11,7 @@ from typing import Any, overload
 from ngwear.errors import SceneError
 from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
+from ngwear.results.quantities_of_interest import at_least_by_halved
 from ngwear.results.recorder import Recorder
 from ngwear.scene.accuracy import PRESETS, Accuracy
 from ngwear.scene.pin_scene import PinScene
@@ -67,7 +68,8 @@ def run(
         Replaces the accuracy of the scene: a preset (``"draft"``, ``"engineering"``, ``"reference"``), or the allowed
         relative error of the maximum depth, such as 0.01.
     alone : bool
-        Without coarser runs: the error of the mesh is not estimated. A scene that requests an error is run at the first
+        Without coarser runs: the error of the mesh is estimated for a part with room to move only
+        (``loop.halved_elements``). A scene that requests an error is run at the first
         level only, with a warning.
     resume : bool
         Continue the run in the folder.
@@ -129,12 +131,13 @@ def _run_alone(scene: Scene, out: Path | None, *, resume: bool, progress: bool, 
 
         scene = first_level(scene)
 
-    def warn(_: Recorder, summary: dict[str, Any]) -> None:
+    def state(_: Recorder, summary: dict[str, Any]) -> None:
+        summary["error estimates"] |= at_least_by_halved(summary["error estimates"])
         if asks:
             summary["warnings"].append("run alone: the error that the scene asks for is not checked")
 
     return run_scene(
-        scene, out=out, resume=resume, progress=progress, throw=throw, figures=out is not None, errors=warn
+        scene, out=out, resume=resume, progress=progress, throw=throw, figures=out is not None, errors=state
     )
 
 

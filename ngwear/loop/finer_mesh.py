@@ -29,10 +29,11 @@ EVERYWHERE, LOCALLY = 2, 3  # how often in a run: sixteen times as many elements
 
 def may_be_finer(state: State) -> bool:
     """Whether a run may still halve all elements."""
-    return _remeshes(state) and state.halved < EVERYWHERE
+    return remeshes(state) and state.halved < EVERYWHERE
 
 
-def _remeshes(state: State) -> bool:
+def remeshes(state: State) -> bool:
+    """Whether the part has room to move, and its mesh may change."""
     scene = state.stage.scene
     return bool(state.stage.floats) and scene.wear.remesh == "due" and scene.deactivation is None
 
@@ -54,7 +55,7 @@ def refine_everywhere(state: State) -> None:
 def unresolved(state: State) -> list[Finding]:
     """What the mesh does not resolve in the last solves, if a run may still refine there."""
     on_purpose = state.across is not None and state.across < PRESETS["draft"]  # a run that others are compared with
-    if on_purpose or not _remeshes(state) or state.refined >= LOCALLY:
+    if on_purpose or not remeshes(state) or state.refined >= LOCALLY:
         return []
     return [found for report in state.reports for found in report.findings if len(found.places)]
 

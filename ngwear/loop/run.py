@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.loop.checkpoint import load, save
+from ngwear.loop.halved_elements import add_mesh_errors
 from ngwear.loop.result import Result
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
@@ -83,7 +84,7 @@ def run(
         Called with the state after mounting and after each accepted step.
     errors : callable or None
         Called with records and summary of a completed run after all data are written; it may add errors to the
-        summary.
+        summary. Errors by the mesh (``halved_elements``) are computed with it only.
     draw : Drawing or None
         Draws the figures; default: this process.
 
@@ -106,6 +107,8 @@ def run(
         try:
             if state is None:
                 state = stepper.start()
+                if errors is not None:
+                    add_mesh_errors(state)
                 _keep(folder, state, recorder, wall, cpu)
                 if folder is not None and figures and recorder.snapshots:
                     draw.draw_section(folder.path, recorder.sections)
@@ -121,6 +124,8 @@ def run(
     if error is not None and state is not None:
         _keep_last(stepper, state, recorder)
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
+    if state is not None and error is None and errors is not None:
+        add_mesh_errors(state)
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
     message, blown = "all strokes done", None if state is None else stepper.blown(state)
@@ -137,7 +142,7 @@ def run(
     summary: dict[str, Any] = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
-        summary["error estimates"] |= by_time_step
+        summary["error estimates"] |= by_time_step | state.mesh_errors
         summary["warnings"] += warnings
     if folder is not None:
         folder.finish(recorder, summary)

@@ -167,6 +167,7 @@ class State:
     ``fatigue`` is the accumulated damage of each element, and ``strained`` that of the present cycle so far [-]; both
     are empty unless damage accumulates over cycles. ``fine``, shape (k, 3), are places and the element edges that
     solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
+    ``mesh_errors`` are relative errors by the mesh, by name (``ngwear.loop.halved_elements``).
     """
 
     stage: Stage
@@ -185,6 +186,7 @@ class State:
     fine: Array = field(default_factory=lambda: np.empty((0, 3)))
     halved: int = 0
     refined: int = 0
+    mesh_errors: dict[str, float] = field(default_factory=dict)
 
     @property
     def background(self) -> Background | None:

@@ -308,11 +308,11 @@ class Stepper:
                 state.phases[i] = saved
         self.restore_last_stroke(state)
 
-    def solve_next_cycle(self, state: State) -> list[StrokeReport]:
-        """Solve the strokes of the next cycle without wear; this changes the states and the memory of ``state``."""
+    def solve_next_cycle(self, state: State, *, hard: bool = False) -> list[StrokeReport]:
+        """Solve the strokes of the next cycle without wear (``solve_stroke``); this changes states and memory."""
         plan, reports = self._next_cycle(state), []
         for i, _ in plan:
-            reports.append(self._solve_without_wear(state, i, plan))
+            reports.append(self._solve_without_wear(state, i, plan, hard=hard))
             if state.memory is not None and state.stage.memory is not None:
                 state.memory.record(state.stage.memory, i)
         return reports
@@ -329,12 +329,12 @@ class Stepper:
         kinds = len(self.scene.program.cycle)
         return planned(kinds, state.strokes, 1, state.strokes + kinds)
 
-    def _solve_without_wear(self, state: State, index: int, plan: Plan) -> StrokeReport:
+    def _solve_without_wear(self, state: State, index: int, plan: Plan, *, hard: bool = False) -> StrokeReport:
         """Solve a stroke of the cycle on the present outline, without wear."""
         state.phases[index] = replace(state.phases[index], rate=None)
         sliding = self._strokes(index, state.strokes)
         WearStep.begin(state, index, sliding)
-        iterations = solve_stroke(state, index, self.scene.program.cycle[index], sliding, plan=plan)
+        iterations = solve_stroke(state, index, self.scene.program.cycle[index], sliding, plan=plan, hard=hard)
         return self._report(state, index, iterations, sliding)
 
     def _step(self, state: State, cycles: int) -> float:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
+from ngwear.plots.contact_pressures import line_over_x
 from ngwear.plots.sections import Box, box, when
 from ngwear.plots.stress import directions
 from ngwear.plots.style import COLOURS, new_figure
@@ -127,10 +128,9 @@ def _line(axes: Axes, kind: str, colour: str) -> Any:
 
 
 def _curve(snapshot: Snapshot) -> tuple[Array, Array]:
-    """Places and pressures of all contacts, sorted by x, with a gap between one contact and the next."""
+    """Places and pressures of all contacts, with a gap between one zone and the next."""
     x, p, gap = [np.zeros(0)], [np.zeros(0)], np.array([np.nan])
     for profile in snapshot.profiles.values():
-        order = np.argsort(profile["place [mm]"][:, 0])
-        x += [profile["place [mm]"][order, 0], gap]
-        p += [profile["pressure [MPa]"][order], gap]
+        places, pressures = line_over_x(profile["place [mm]"], profile["pressure [MPa]"])
+        x, p = [*x, places, gap], [*p, pressures, gap]
     return np.concatenate(x), np.concatenate(p)

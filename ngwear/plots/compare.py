@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
+from ngwear.plots.contact_pressures import line_over_x
 from ngwear.plots.style import COLOURS, write
 from ngwear.results.result_file import ResultFile, Snapshot, read_result
 
@@ -63,10 +64,9 @@ def comparison_figure(first: ResultFile, second: ResultFile) -> Figure:
             mine = [s for s in result.snapshots if s.kind == kind]
             for snapshot, style in ((_first_worn(mine), "--"), (mine[-1], "-")):
                 for profile in snapshot.profiles.values():
-                    place, p = profile["place [mm]"][:, 0], profile["pressure [MPa]"]
-                    along = np.argsort(place)
+                    place, p = line_over_x(profile["place [mm]"], profile["pressure [MPa]"])
                     label = f"{result.scene}, {'first' if style == '--' else 'last'}"
-                    panel.plot(place[along], p[along], style, color=colour, lw=0.9, label=label)
+                    panel.plot(place, p, style, color=colour, lw=0.9, label=label)
         panel.set_ylabel(f"{kind}: pressure [MPa]")
         panel.set_ylim(bottom=0)
     axes[-1].set_xlabel("x [mm]")

@@ -66,14 +66,34 @@ def draw_pressure(axes: Axes, name: str, surface: RigidSurface | None, states: L
 
 def _line(along: Array, contact: SectionContact) -> tuple[Array, Array]:
     """The line through the nodes, broken where no mesh edge joins two, and without stretches of no pressure."""
-    p, n = contact.pressure, len(contact.pressure)
+    n = len(contact.pressure)
     joined = np.zeros(n, dtype=bool)  # node i to the next one, around
     first, second = contact.edges.T
     joined[first[second == (first + 1) % n]] = True
     joined[second[first == (second + 1) % n]] = True
-    joined &= (p > 0) | (np.roll(p, -1) > 0)
+    return _line_through(along, contact.pressure, joined)
+
+
+def line_over_x(place: Array, pressure: Array) -> tuple[Array, Array]:
+    """Pressure over x of a contact's nodes in the order of the outline, with gaps (nan) where there is none.
+
+    ``place``, shape (k, 2). The last node is joined to the first one if they lie as close as others.
+    """
+    if len(place) == 0:
+        return place[:, 0], pressure
+    apart = np.linalg.norm(np.roll(place, -1, axis=0) - place, axis=1)
+    joined = np.ones(len(place), dtype=bool)
+    joined[-1] = apart[-1] <= apart[:-1].max(initial=0.0)
+    return _line_through(place[:, 0], pressure, joined)
+
+
+def _line_through(along: Array, pressure: Array, joined: NDArray[np.bool_]) -> tuple[Array, Array]:
+    """The line through nodes, of which some are joined to the next one, around; gaps where no two carry pressure."""
+    n = len(pressure)
+    joined = joined & ((pressure > 0) | (np.roll(pressure, -1) > 0))
     begin = int(np.flatnonzero(~joined)[-1] + 1) % n if not joined.all() else 0
     order = (begin + np.arange(n)) % n
+    shown = (joined | np.roll(joined, 1))[order]
     breaks = np.flatnonzero(~joined[order[:-1]]) + 1
-    x, y = along[order], p[order]
+    x, y = np.where(shown, along[order], np.nan), np.where(shown, pressure[order], np.nan)
     return np.insert(x, breaks, np.nan), np.insert(y, breaks, np.nan)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ngwear.errors import ResultError
 from ngwear.plots.area_balance import book_figure, has_book
+from ngwear.plots.contact_pressures import line_over_x
 from ngwear.plots.counter import counter_figure, worn_counters
 from ngwear.plots.laws import has_laws, law_figure
 from ngwear.plots.loaded_section import SECTION, draw_section, section_figure
@@ -113,9 +114,8 @@ def _style() -> AbstractContextManager[None]:
 def _pressure(axes: Axes, snapshot: Snapshot, **style: Any) -> None:
     label = style.pop("label", None)
     for profile in snapshot.profiles.values():
-        place, p = profile["place [mm]"], profile["pressure [MPa]"]
-        order = np.argsort(place[:, 0])
-        axes.plot(place[order, 0], p[order], label=label, **style)
+        x, p = line_over_x(profile["place [mm]"], profile["pressure [MPa]"])
+        axes.plot(x, p, label=label, **style)
         label = None
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -13,15 +13,16 @@ from ngwear.scene.program import whole_name
 Rows = list[dict[str, Any]]
 
 DEPTH, AREA, LOST = "maximum depth [-]", "worn area [-]", "area lost in all [-]"
-PEAK, FRICTION = "peak pressure [-]", "friction force [-]"
+PEAK, WIDTH, FRICTION = "peak pressure [-]", "contact width [-]", "friction force [-]"
 LEAKS = "leak pressure [-]"  # only if the scene asks for it
 RUN_COLUMNS = {
     DEPTH: "maximum depth [mm]",
     AREA: "area removed from the outline [mm^2]",
     LOST: "area lost in all [mm^2]",  # only if elements are deactivated
 }
-STROKE_ERRORS = {"peak pressure": PEAK, "contact width": "contact width [-]", "friction force": FRICTION}
+STROKE_ERRORS = {"peak pressure": PEAK, "contact width": WIDTH, "friction force": FRICTION}
 BY_TIME_STEP = "by the time step [-]"  # ending of a name: part of the error of a quantity
+BY_HALVED = "by halved elements [-]"  # the same: what elements of half the edges say of the mesh alone
 # The last half of the run was chosen on the filled seal (``verify error_estimates``); 17 strokes average out scatter.
 PLACES = 17  # number of strokes in the last half of the run at which histories are compared
 
@@ -48,6 +49,13 @@ def quantities(rows: Rows) -> dict[str, dict[str, list[float]]]:
             mean = np.mean([history(column, of) for of in mine], axis=0)
             out.setdefault(error, {})[f"{kind}: {column}"] = mean.tolist()
     return out
+
+
+def at_least_by_halved(errors: Mapping[str, float]) -> dict[str, float]:
+    """Total errors, each at least its part ``BY_HALVED``; only those that have this part."""
+    parts = {name: error for name, error in errors.items() if name.endswith(BY_HALVED)}
+    totals = {f"{name.removesuffix(BY_HALVED)}[-]": error for name, error in parts.items()}
+    return {name: max(errors.get(name, 0.0), error) for name, error in totals.items()}
 
 
 def element_edge(rows: Rows) -> float:

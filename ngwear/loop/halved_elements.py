@@ -1,0 +1,81 @@
+"""Error by the mesh: a cycle is solved again on elements of half the edges, on the same outline, without wear.
+
+Coarser runs may all miss what the elements of none of them resolve, and then agree. The change of peak pressures, loads
+and widths with half the edges does not depend on them. First order is assumed: the error is twice that change. It is
+computed before the first stroke, after which wear evens the pressures out; if that fails, after the last one.
+
+Only for parts with room to move, which are mounted on coarse elements.
+"""
+
+from __future__ import annotations
+
+import logging
+from copy import copy
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ngwear.errors import ConvergenceError, GeometryError, MeshError
+from ngwear.loop.finer_mesh import refine_everywhere, remeshes
+from ngwear.loop.state import State
+from ngwear.loop.stepper import Stepper
+from ngwear.loop.stroke_solve import settle_last_stroke
+from ngwear.loop.time_step_error import next_cycle
+from ngwear.results.quantities_of_interest import AREA, BY_HALVED, DEPTH, FRICTION, PEAK, WIDTH
+from ngwear.results.richardson import relative_errors
+
+REMAINS = 2.0  # of first order: the error over what halves change, 1 / (1 - 1/2)
+Read = dict[str, dict[str, ArrayLike]]
+log = logging.getLogger(__name__)
+
+
+def add_mesh_errors(state: State) -> None:
+    """Store the relative errors by the mesh in the present state in ``State.mesh_errors``, unless they are known.
+
+    They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; the error
+    of the depth is that of the largest wear per cycle. A part that is held has none, and one whose cycle has no
+    equilibrium near by on the finer elements has none either.
+    """
+    if state.mesh_errors or not remeshes(state):
+        return
+    try:
+        mine, other = _read(next_cycle(state) if state.strokes else state), _read(_on_halved(state))
+    except (ConvergenceError, GeometryError, MeshError) as error:
+        log.info("the error by the mesh is not known: %s", error)
+        return
+    finally:
+        Stepper(state.stage.scene).restore_last_stroke(state)
+    changes = relative_errors(mine, other)
+    state.mesh_errors = {f"{name[:-4]} {BY_HALVED}": REMAINS * change for name, change in changes.items()}
+
+
+def _on_halved(state: State) -> State:
+    """Solve the next cycle on a copy of the state with halved elements; its ``reports`` are the strokes."""
+    there = copy(state)
+    there.work, there.ledger, there.memory = copy(state.work), state.ledger.copy(), copy(state.memory)
+    there.phases = [replace(phase) for phase in state.phases]
+    refine_everywhere(there)
+    if there.stage.floats and there.stage.has_stick_slip:
+        settle_last_stroke(there)
+    there.reports = Stepper(state.stage.scene).solve_next_cycle(there, hard=True)
+    return there
+
+
+def _read(state: State) -> Read:
+    """Values of each stroke, and load per length times travel over the cycle, to which wear is proportional."""
+    scene = state.stage.scene
+    out: Read = {}
+    for report in state.reports:
+        stroke = scene.program.cycle[report.phase].name
+        for name, profile in report.contacts.items():
+            zones = profile.zones()
+            out.setdefault(PEAK, {})[f"{stroke}: {name}"] = max((zone.peak for zone in zones), default=0.0)
+            out.setdefault(WIDTH, {})[f"{stroke}: {name}"] = sum(zone.width for zone in zones)
+        for name in (name for name in report.forces if name.endswith("friction")):
+            out.setdefault(FRICTION, {})[f"{stroke}: {name}"] = report.forces[name]
+    for name in (spec.name for spec in scene.contacts if spec.wears):
+        worn = sum((scene.program.cycle[r.phase].travel * r.contacts[name].load for r in state.reports), np.zeros(()))
+        out.setdefault(AREA, {})[name] = worn.sum()
+        out.setdefault(DEPTH, {})[name] = (worn / state.reports[0].contacts[name].weight).max()
+    return out
