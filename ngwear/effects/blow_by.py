@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ngwear.effects.fluid_pressure import FluidPressure
+from ngwear.effects.fluid_pressure import LESS, FluidPressure
 
 # Of the fluid's pressure: how much less counts as blow-by. So exact is the contact pressure of a part that the fluid
 # presses into its groove (geometries/rectangular_ring).
@@ -32,6 +32,31 @@ class BlowBy:
     pressure: float
     holds: float
     meets: str
+
+
+@dataclass(frozen=True)
+class BarelyHeld:
+    """A ridge of contact pressure that holds a fluid hardly, with a part of the contact behind it that would not.
+
+    Attributes
+    ----------
+    inlet, edge : str
+        Where the fluid comes from, and the edge with the ridge.
+    positions : array of int
+        The ridge's mesh edges on the outline.
+    pressure, ridge, behind : float
+        Pressure of the fluid, highest contact pressure of the ridge, and lowest behind it [MPa].
+    next_edge : str
+        Edge with the contact that would hold the fluid next.
+    """
+
+    inlet: str
+    edge: str
+    positions: np.ndarray
+    pressure: float
+    ridge: float
+    behind: float
+    next_edge: str
 
 
 def leak_pressure(fluid: FluidPressure) -> tuple[float, str]:
@@ -60,12 +85,43 @@ def blow_by(fluid: FluidPressure) -> BlowBy | None:
     return None
 
 
-def _ways(fluid: FluidPressure) -> list[BlowBy]:
-    """What holds the fluid on each of its two ways."""
-    names = fluid.names
-    highest = np.zeros(len(names))
+def barely_held(fluid: FluidPressure) -> list[BarelyHeld]:
+    """Where the fluid is held by less than the contact pressure errs by (``fluid_pressure.LESS``), on each way.
+
+    Only where it matters: a part of the contact behind the ridge carries less than the fluid, and another one behind
+    that would hold it. Without the ridge the fluid would lift the contact up to there.
+    """
+    pressure, highest = fluid.pressure.Get(), _highest(fluid)
+    found: list[BarelyHeld] = []
+    for (_, path), stop in zip(fluid.paths, fluid.stops(), strict=True):
+        carried = np.where(stop & (fluid.shares[path] < 1.0), highest[path], 0.0)
+        holds = np.flatnonzero(carried >= (1 - LESS) * pressure)
+        if pressure <= 0 or len(holds) == 0:
+            continue
+        low = np.flatnonzero(carried[holds[0] :] < (1 - LESS) * pressure) + holds[0]
+        beyond = holds[holds > low[0]] if len(low) else low
+        ridge = carried[holds[0] : low[0]] if len(low) else carried
+        if len(beyond) == 0 or ridge.max() > (1 + LESS) * pressure:
+            continue
+        top, behind = holds[0] + int(ridge.argmax()), float(carried[low[0] : beyond[0]].min())
+        names, edges = fluid.names[path], path[holds[0] : low[0]]
+        found.append(
+            BarelyHeld(fluid.name, str(names[top]), edges, pressure, float(ridge.max()), behind, str(names[beyond[0]]))
+        )
+    return found
+
+
+def _highest(fluid: FluidPressure) -> np.ndarray:
+    """Highest contact pressure of each mesh edge, in the order of the outline [MPa]."""
+    highest = np.zeros(len(fluid.names))
     for contact in fluid.contacts:
         highest[contact.positions] = np.maximum(highest[contact.positions], contact.edge_peaks())
+    return highest
+
+
+def _ways(fluid: FluidPressure) -> list[BlowBy]:
+    """What holds the fluid on each of its two ways."""
+    names, highest = fluid.names, _highest(fluid)
     found = []
     for (_, path), beyond, stop in zip(fluid.paths, fluid.beyond, fluid.stops(), strict=True):
         held = np.where(stop, highest[path], 0.0)

@@ -40,6 +40,7 @@ from typing import Any
 
 import numpy as np
 
+from ngwear.error_estimates.stated_errors import at_least_by_halved, state_errors
 from ngwear.errors import NgwearError
 from ngwear.loop.result import Result
 from ngwear.loop.run import LocalDrawing
@@ -52,7 +53,6 @@ from ngwear.results.quantities_of_interest import (
     LOST,
     PEAK,
     RUN_COLUMNS,
-    at_least_by_halved,
     element_edge,
     quantities,
 )
@@ -271,8 +271,10 @@ class _CoarserRuns:
         """Wait for the coarser runs, and write the error estimates into the summary."""
         other = self._wait_for(*self.runs[0])
         if "gave up" in other:
-            why = f"the coarser run gave up: {other['gave up']}"
-            summary["warnings"].append(f"{why}; the error of the mesh is not known")
+            by_halved = at_least_by_halved(summary["error estimates"])
+            says = "known from elements of half the edges alone" if by_halved else "not known"
+            summary["warnings"].append(f"the coarser run gave up: {other['gave up']}; the error of the mesh is {says}")
+            state_errors(summary, summary["error estimates"] | by_halved)
             return
         embedded, mine = summary["error estimates"], quantities(recorder.rows)
         ratio = edge_ratio(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
@@ -286,7 +288,7 @@ class _CoarserRuns:
                 summary["warnings"].append(f"{why}; first order is assumed for the error of the mesh")
             known = combined_errors(self.scene, embedded, mine, other["reading"], coarsest.get("reading"), ratio=ratio)
             left.append((coarsest, "coarsest companion"))
-        summary["error estimates"] = known
+        state_errors(summary, known)
         for found, name in left:
             for cost, unit in COSTS:
                 if cost in found:

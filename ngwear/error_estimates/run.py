@@ -8,10 +8,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, overload
 
+from ngwear.error_estimates.stated_errors import at_least_by_halved, state_errors
 from ngwear.errors import SceneError
 from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
-from ngwear.results.quantities_of_interest import at_least_by_halved
 from ngwear.results.recorder import Recorder
 from ngwear.scene.accuracy import PRESETS, Accuracy
 from ngwear.scene.pin_scene import PinScene
@@ -132,7 +132,8 @@ def _run_alone(scene: Scene, out: Path | None, *, resume: bool, progress: bool, 
         scene = first_level(scene)
 
     def state(_: Recorder, summary: dict[str, Any]) -> None:
-        summary["error estimates"] |= at_least_by_halved(summary["error estimates"])
+        errors = summary["error estimates"]
+        state_errors(summary, errors | at_least_by_halved(errors))
         if asks:
             summary["warnings"].append("run alone: the error that the scene asks for is not checked")
 

@@ -49,7 +49,7 @@ def refine_everywhere(state: State) -> None:
     points = state.stage.problem.points
     points.follow()
     remesh(state, scene=state.stage.scene, fine=np.column_stack([points.centres, FINER * points.edges]))
-    state.halved += 1
+    state.halved, state.mesh_errors = state.halved + 1, {}
 
 
 def unresolved(state: State) -> list[Finding]:
@@ -70,7 +70,7 @@ def refine_at(state: State, found: Sequence[Finding]) -> None:
     """
     asked = [finding.places * (1.0, 1.0, FINER) for finding in found]
     remesh(state, scene=state.stage.scene, fine=np.vstack([state.fine, *asked]))
-    state.refined += 1
+    state.refined, state.mesh_errors = state.refined + 1, {}
 
 
 def keep_as_it_is(state: State) -> None:

@@ -20,7 +20,6 @@ from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.loop.finer_mesh import refine_everywhere, remeshes
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.stroke_solve import settle_last_stroke
 from ngwear.loop.time_step_error import next_cycle
 from ngwear.results.quantities_of_interest import AREA, BY_HALVED, DEPTH, FRICTION, PEAK, WIDTH
 from ngwear.results.richardson import relative_errors
@@ -34,10 +33,10 @@ def add_mesh_errors(state: State) -> None:
     """Store the relative errors by the mesh in the present state in ``State.mesh_errors``, unless they are known.
 
     They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; the error
-    of the depth is that of the largest wear per cycle. A part that is held has none, and one whose cycle has no
-    equilibrium near by on the finer elements has none either.
+    of the depth is that of the largest wear per cycle. Not for a part that is held, or rubber with memory;
+    none where the cycle has no equilibrium on the finer elements.
     """
-    if state.mesh_errors or not remeshes(state):
+    if state.mesh_errors or state.memory is not None or not remeshes(state):
         return
     try:
         mine, other = _read(next_cycle(state) if state.strokes else state), _read(_on_halved(state))
@@ -51,14 +50,12 @@ def add_mesh_errors(state: State) -> None:
 
 
 def _on_halved(state: State) -> State:
-    """Solve the next cycle on a copy of the state with halved elements; its ``reports`` are the strokes."""
+    """A copy of the state with halved elements, on which the cycle is solved without wear."""
     there = copy(state)
-    there.work, there.ledger, there.memory = copy(state.work), state.ledger.copy(), copy(state.memory)
+    there.work, there.ledger = copy(state.work), state.ledger.copy()
     there.phases = [replace(phase) for phase in state.phases]
     refine_everywhere(there)
-    if there.stage.floats and there.stage.has_stick_slip:
-        settle_last_stroke(there)
-    there.reports = Stepper(state.stage.scene).solve_next_cycle(there, hard=True)
+    Stepper(state.stage.scene).settle_on_new_mesh(there)
     return there
 
 

@@ -24,7 +24,7 @@ from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 
 if TYPE_CHECKING:  # modules of effects that the scene does not have are not imported
-    from ngwear.effects.blow_by import BlowBy
+    from ngwear.effects.blow_by import BarelyHeld, BlowBy
     from ngwear.effects.fluid_pressure import FluidPressure
     from ngwear.effects.friction import Friction, FullSliding
     from ngwear.effects.stick_slip import StickSlip
@@ -182,6 +182,14 @@ class Stage:
         from ngwear.effects.blow_by import blow_by
 
         return tuple(blown for fluid in self.fluids.values() if (blown := blow_by(fluid)) is not None)
+
+    def barely_held(self) -> tuple[BarelyHeld, ...]:
+        """The fluids that contacts hardly hold in the present state."""
+        if not self.fluids:
+            return ()
+        from ngwear.effects.blow_by import barely_held
+
+        return tuple(ridge for fluid in self.fluids.values() for ridge in barely_held(fluid))
 
     @property
     def leaking(self) -> list[FluidPressure]:

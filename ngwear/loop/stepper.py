@@ -184,11 +184,11 @@ class Stepper:
                 levels += 1
                 continue
             remesh(state, scene=scene if floats else None)
-            self._settle_on_new_mesh(state)
+            self.settle_on_new_mesh(state)
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
-    def _settle_on_new_mesh(self, state: State) -> None:
+    def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over, or mount anew: where friction sticks, before load steps."""
         carried, sticks = state.saved(), bool(state.stage.floats) and state.stage.has_stick_slip
         try:
@@ -308,11 +308,11 @@ class Stepper:
                 state.phases[i] = saved
         self.restore_last_stroke(state)
 
-    def solve_next_cycle(self, state: State, *, hard: bool = False) -> list[StrokeReport]:
-        """Solve the strokes of the next cycle without wear (``solve_stroke``); this changes states and memory."""
+    def solve_next_cycle(self, state: State) -> list[StrokeReport]:
+        """Solve the strokes of the next cycle without wear; this changes the states and the memory of ``state``."""
         plan, reports = self._next_cycle(state), []
         for i, _ in plan:
-            reports.append(self._solve_without_wear(state, i, plan, hard=hard))
+            reports.append(self._solve_without_wear(state, i, plan))
             if state.memory is not None and state.stage.memory is not None:
                 state.memory.record(state.stage.memory, i)
         return reports
@@ -329,12 +329,12 @@ class Stepper:
         kinds = len(self.scene.program.cycle)
         return planned(kinds, state.strokes, 1, state.strokes + kinds)
 
-    def _solve_without_wear(self, state: State, index: int, plan: Plan, *, hard: bool = False) -> StrokeReport:
+    def _solve_without_wear(self, state: State, index: int, plan: Plan) -> StrokeReport:
         """Solve a stroke of the cycle on the present outline, without wear."""
         state.phases[index] = replace(state.phases[index], rate=None)
         sliding = self._strokes(index, state.strokes)
         WearStep.begin(state, index, sliding)
-        iterations = solve_stroke(state, index, self.scene.program.cycle[index], sliding, plan=plan, hard=hard)
+        iterations = solve_stroke(state, index, self.scene.program.cycle[index], sliding, plan=plan)
         return self._report(state, index, iterations, sliding)
 
     def _step(self, state: State, cycles: int) -> float:

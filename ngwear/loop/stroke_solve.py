@@ -37,12 +37,10 @@ def solve_stroke(
     *,
     plan: Plan = (),
     at_once: bool = False,
-    hard: bool = False,
 ) -> int:
     """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
 
-    ``plan`` is the plan of the step, for the memory. With ``at_once`` no load steps are tried, with ``hard`` none below
-    ``HARDEST``.
+    ``plan`` is the plan of the step, for the memory. With ``at_once`` no load steps are tried.
 
     Raises
     ------
@@ -79,7 +77,7 @@ def solve_stroke(
         if at_once and last is not None:
             raise ConvergenceError(f"the {stroke.name} stroke needs load steps", last)
         starts = bool(stage.floats) and repeats == 0 and state.strokes == 0
-        path, fewest = _by_steps(state, index, stroke, work, hard=hard or repeats > 1 or starts)
+        path, fewest = _by_steps(state, index, stroke, work, hard=repeats > 1 or starts)
     state.work.add(work)
     rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
     shares = stage.shares(stroke)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -49,13 +49,6 @@ def quantities(rows: Rows) -> dict[str, dict[str, list[float]]]:
             mean = np.mean([history(column, of) for of in mine], axis=0)
             out.setdefault(error, {})[f"{kind}: {column}"] = mean.tolist()
     return out
-
-
-def at_least_by_halved(errors: Mapping[str, float]) -> dict[str, float]:
-    """Total errors, each at least its part ``BY_HALVED``; only those that have this part."""
-    parts = {name: error for name, error in errors.items() if name.endswith(BY_HALVED)}
-    totals = {f"{name.removesuffix(BY_HALVED)}[-]": error for name, error in parts.items()}
-    return {name: max(errors.get(name, 0.0), error) for name, error in totals.items()}
 
 
 def element_edge(rows: Rows) -> float:

@@ -1,0 +1,97 @@
+"""The error by the mesh, from elements of half the edges."""
+
+from dataclasses import replace
+
+import pytest
+
+import ngwear as nw
+from ngwear.error_estimates.stated_errors import LARGE, at_least_by_halved, state_errors
+from ngwear.errors import ConvergenceError
+from ngwear.loop import halved_elements
+from ngwear.loop.finer_mesh import refine_everywhere
+from ngwear.loop.halved_elements import add_mesh_errors
+from ngwear.loop.run import run
+from ngwear.loop.stepper import Stepper
+from ngwear.results.quantities_of_interest import AREA, BY_HALVED, DEPTH, PEAK
+from ngwear.scene.accuracy import Accuracy
+
+BY_DEPTH, BY_PEAK = (f"{name[:-4]} {BY_HALVED}" for name in (DEPTH, PEAK))
+
+
+@pytest.fixture(scope="module")
+def ring():
+    scene = nw.read_scene("geometries/o_ring/scene.toml")
+    return replace(scene, accuracy=nw.Accuracy.draft(), program=replace(scene.program, strokes=2))
+
+
+@pytest.fixture
+def mounted(ring):
+    return Stepper(ring).start()
+
+
+def worn(state):
+    """Largest load per length times travel of the cycle, and largest pressure."""
+    read = halved_elements._read(state)
+    return max(read[DEPTH].values()), max(read[PEAK].values())
+
+
+def test_it_covers_what_a_finer_mesh_changes(ring, mounted):
+    add_mesh_errors(mounted)
+    finer = Stepper(replace(ring, accuracy=Accuracy(across=24.0))).start()
+    for name, mine, exact in zip((BY_DEPTH, BY_PEAK), worn(mounted), worn(finer), strict=True):
+        off = abs(mine / exact - 1)
+        assert off <= mounted.mesh_errors[name] < 0.1
+
+
+def test_the_state_stays_as_it_is(mounted):
+    before, elements, solves = mounted.phases[-1].vector.copy(), mounted.stage.body.mesh.ne, mounted.work.solves
+    add_mesh_errors(mounted)
+    assert mounted.stage.body.mesh.ne == elements
+    assert mounted.work.solves == solves
+    assert (mounted.phases[-1].vector == before).all()
+    assert (mounted.stage.problem.state.vec.FV().NumPy() == before).all()
+
+
+def test_errors_of_a_mesh_go_with_it(mounted):
+    add_mesh_errors(mounted)
+    refine_everywhere(mounted)
+    assert mounted.mesh_errors == {}
+
+
+def test_a_part_that_is_held_has_none():
+    state = Stepper(replace(nw.read_scene("geometries/rod_seal/scene.toml"), accuracy=Accuracy(across=1.0))).start()
+    add_mesh_errors(state)
+    assert state.mesh_errors == {}
+
+
+def test_without_an_equilibrium_on_them_they_are_tried_again_at_the_end(ring, monkeypatch):
+    tries, on_halved = [], halved_elements._on_halved
+
+    def fails_first(state):
+        tries.append(state.strokes)
+        if len(tries) == 1:
+            raise ConvergenceError("no equilibrium")
+        return on_halved(state)
+
+    monkeypatch.setattr(halved_elements, "_on_halved", fails_first)
+    summary = run(ring, progress=False, errors=lambda recorder, summary: None).summary
+    assert tries == [0, 2]
+    assert summary["error estimates"][BY_DEPTH] > 0
+
+
+def test_a_run_that_states_no_errors_does_not_look(ring, monkeypatch):
+    monkeypatch.setattr(halved_elements, "_on_halved", None)
+    assert BY_DEPTH not in run(ring, progress=False).summary["error estimates"]
+
+
+def test_totals_are_at_least_the_part():
+    errors = {DEPTH: 0.01, PEAK: 0.05, BY_DEPTH: 0.02, BY_PEAK: 0.03, f"{AREA[:-4]} {BY_HALVED}": 0.04}
+    assert at_least_by_halved(errors) == {DEPTH: 0.02, PEAK: 0.05, AREA: 0.04}
+
+
+def test_a_large_error_is_a_warning():
+    summary = {"warnings": []}
+    state_errors(summary, {DEPTH: 1.1 * LARGE, PEAK: 0.9 * LARGE})
+    assert summary["error estimates"] == {DEPTH: 1.1 * LARGE, PEAK: 0.9 * LARGE}
+    (warning,) = summary["warnings"]
+    assert warning.startswith("the stated error of the maximum depth is 28 %")
