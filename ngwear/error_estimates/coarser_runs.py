@@ -11,6 +11,8 @@ Errors of mesh and jumps may cancel in one run and not in the next. So the error
 embedded estimate of the wear steps.
 
 For parts with room to move, an error is at least that by elements of half the edges (``ngwear.loop.halved_elements``).
+They have one coarser run only, and it is waited for as long as the run itself took: on very coarse elements such a part
+may be hard to mount.
 
 With few elements across, the elements on a curved outline are finer than the setting asks for. With a single coarser
 run, its real ratio of element edges in contact is used, instead of two (``edge_ratio``).
@@ -59,6 +61,7 @@ from ngwear.results.quantities_of_interest import (
 from ngwear.results.recorder import TORN, Recorder, fingerprint
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.accuracy import LEAST_ACROSS, Tolerances
+from ngwear.scene.holding import free_directions
 from ngwear.scene.scene import Scene
 
 # The ratio of the three runs; and the least that one coarser run counts as, settled on the rod seal with 2.5 and 4
@@ -198,8 +201,9 @@ def run_with_coarser_runs(
     worker : Worker or None
         The second process, if it has been started already; it ends with the run.
 
-    If the coarsest run gives up, first order is assumed; if the first one gives up, the error of the mesh is not known.
-    The summary then has a warning. The second process also draws half of the figures if it is free.
+    A part with room to move has one coarser run. If the coarsest run gives up, first order is assumed; if the first one
+    gives up, or takes too long for such a part, the error of the mesh is not known, or from halved elements alone. The
+    summary then has a warning. The second process also draws half of the figures if it is free.
     """
     companions = _CoarserRuns(scene, Path(out), requested, worker)
 
@@ -231,9 +235,11 @@ class _CoarserRuns:
         self, scene: Scene, folder: Path, requested: Mapping[str, float] | None, worker: Worker | None
     ) -> None:
         self.scene, self.requested, self.worker = scene, requested, worker
-        levels = ((1, FILE), (2, COARSEST))
+        self.floats = bool(free_directions(scene))
+        levels = ((1, FILE),) if self.floats else ((1, FILE), (2, COARSEST))
         self.runs = [(coarser_scene(scene, COARSER**power), folder / name) for power, name in levels]
         self.begun: list[tuple[Scene, Path]] = []
+        self.start = time.perf_counter()
 
     def __enter__(self) -> _CoarserRuns:
         # Of the peak pressure the first run alone seldom shows little enough; begun later, the coarsest is waited for.
@@ -280,7 +286,7 @@ class _CoarserRuns:
         ratio = edge_ratio(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
         known = combined_errors(self.scene, embedded, mine, other["reading"], ratio=ratio)
         left = [(other, "companion")]
-        if self.requested is None or largest_ratio(known, self.requested) > 1:
+        if self.runs[1:] and (self.requested is None or largest_ratio(known, self.requested) > 1):
             self._begin(self.runs[1:])
             coarsest = self._wait_for(*self.runs[1])
             if "gave up" in coarsest:
@@ -296,11 +302,15 @@ class _CoarserRuns:
 
     def _wait_for(self, scene: Scene, file: Path) -> dict[str, Any]:
         """Wait for the file of one of the runs; return its contents."""
+        now = time.perf_counter()
+        last = 2 * now - self.start if self.floats else math.inf
         if not of_modules(self.scene):
             _run_coarser([(scene, file)])
         while read_coarser_run(scene, file) is None:
             if self.worker is None or not self.worker.alive or self.worker.idle:
                 break
+            if time.perf_counter() > last:
+                return {"gave up": "it took more than twice the time of the run"}
             time.sleep(POLL)
         return read_coarser_run(scene, file) or {"gave up": "its process ended without a result"}
 

@@ -1,10 +1,13 @@
 import json
 import shutil
+import time
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+import ngwear as nw
 from ngwear.error_estimates import coarser_runs as companion
 from ngwear.error_estimates.coarser_runs import (
     COARSER,
@@ -248,6 +251,18 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     assert summary["warnings"] == ["the coarser run gave up: no equilibrium; the error of the mesh is not known"]
     assert "peak pressure [-]" not in summary["error estimates"]
     assert np.isfinite(summary["error estimates"]["maximum depth [-]"])
+
+
+def test_a_part_with_room_waits_for_one_companion_as_long_as_its_run_took(tmp_path):
+    ring = replace(nw.read_scene("geometries/o_ring/scene.toml"), accuracy=nw.Accuracy.draft())
+    busy = SimpleNamespace(alive=True, idle=False, do=lambda *_: None, end=lambda: None)
+    runs = companion._CoarserRuns(ring, tmp_path, None, busy)
+    (only,) = runs.runs
+    assert only[0].accuracy.across == 3.0
+    runs.start = time.perf_counter() - 0.2
+    begin = time.perf_counter()
+    assert runs._wait_for(*only) == {"gave up": "it took more than twice the time of the run"}
+    assert 0.2 < time.perf_counter() - begin < 2.0
 
 
 def test_a_run_is_written_before_its_errors_are_known(tmp_path):
