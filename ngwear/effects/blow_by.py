@@ -42,8 +42,6 @@ class BarelyHeld:
     ----------
     inlet, edge : str
         Where the fluid comes from, and the edge with the ridge.
-    positions : array of int
-        The ridge's mesh edges on the outline.
     pressure, ridge, behind : float
         Pressure of the fluid, highest contact pressure of the ridge, and lowest behind it [MPa].
     next_edge : str
@@ -52,7 +50,6 @@ class BarelyHeld:
 
     inlet: str
     edge: str
-    positions: np.ndarray
     pressure: float
     ridge: float
     behind: float
@@ -86,7 +83,7 @@ def blow_by(fluid: FluidPressure) -> BlowBy | None:
 
 
 def barely_held(fluid: FluidPressure) -> list[BarelyHeld]:
-    """Where the fluid is held by less than the contact pressure errs by (``fluid_pressure.LESS``), on each way.
+    """Where the fluid is held with less over its pressure than contact pressures err by (``ERRS``), on each way.
 
     Only where it matters: a part of the contact behind the ridge carries less than the fluid, and another one behind
     that would hold it. Without the ridge the fluid would lift the contact up to there.
@@ -101,12 +98,12 @@ def barely_held(fluid: FluidPressure) -> list[BarelyHeld]:
         low = np.flatnonzero(carried[holds[0] :] < (1 - LESS) * pressure) + holds[0]
         beyond = holds[holds > low[0]] if len(low) else low
         ridge = carried[holds[0] : low[0]] if len(low) else carried
-        if len(beyond) == 0 or ridge.max() > (1 + LESS) * pressure:
+        if len(beyond) == 0 or ridge.max() > (1 + ERRS) * pressure:
             continue
         top, behind = holds[0] + int(ridge.argmax()), float(carried[low[0] : beyond[0]].min())
-        names, edges = fluid.names[path], path[holds[0] : low[0]]
+        names = fluid.names[path]
         found.append(
-            BarelyHeld(fluid.name, str(names[top]), edges, pressure, float(ridge.max()), behind, str(names[beyond[0]]))
+            BarelyHeld(fluid.name, str(names[top]), pressure, float(ridge.max()), behind, str(names[beyond[0]]))
         )
     return found
 

@@ -79,11 +79,11 @@ def findings(
         *_crushed(stage),
         *_covered_inlets(stage, stroke),
         *_blow_by(stage, stroke),
-        *_barely_held(stage, stroke, before),
+        *_barely_held(stage, stroke),
         *_lower_friction(stage, stroke),
     ]
-    for name, profile in profiles.items():
-        found += _zigzag(name, profile)
+    for name, contact in stage.contacts.items():
+        found += _zigzag(name, profiles[name] if name in profiles else contact.profile())
     return tuple(found)
 
 
@@ -222,16 +222,13 @@ def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
         yield Finding(f"blow-by {stroke.name} {blown.inlet}", blown.pressure - blown.holds, f"{what} {sentence}")
 
 
-def _barely_held(stage: Stage, stroke: Stroke, before: Array) -> Iterator[Finding]:
+def _barely_held(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     """A fluid that a contact holds by less than its pressure errs by: on other elements it may come in further."""
-    length = np.linalg.norm(np.roll(before[0], -1, axis=0) - before[0], axis=1)
     for held in stage.barely_held():
         sentence = (
             f"stroke '{stroke.name}': the contact at '{held.edge}' holds the {held.pressure:.3g} MPa of '{held.inlet}' "
             f"with hardly more, {held.ridge:.3g} MPa, and behind it carries only {held.behind:.3g} MPa: the fluid may "
-            f"come in up to '{held.next_edge}', and pressures and wear would be others; take smaller elements at "
-            f"'{held.edge}'"
+            f"come in up to '{held.next_edge}', and pressures and wear would be others; compare with a finer accuracy"
         )
-        places = np.column_stack([before[1, held.positions], length[held.positions]])
-        over = 1 - held.ridge / held.pressure
-        yield Finding(f"barely held {stroke.name} {held.inlet} {held.edge}", 1 + over, sentence, places)
+        over = held.ridge / held.pressure - 1
+        yield Finding(f"barely held {stroke.name} {held.inlet} {held.edge}", 1 - over, sentence)
