@@ -15,6 +15,7 @@ from ngwear.equilibrium.newton import Report
 from ngwear.equilibrium.problem import Loads
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError
+from ngwear.loop.carried_state import let_go
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.solution_checks import Finding
 from ngwear.loop.state import Phase, State
@@ -134,5 +135,7 @@ def _carry_on(state: State, begin: Array, work: Work) -> Array:
     stage.problem.state.vec.FV().NumPy()[:] = now.vector
     for term in stage.problem.terms:
         term.refresh()
-    work.add(relax(stage.problem, StepOptions(first=0.25)))
+    for report in let_go(stage.problem):
+        work.count(report)
+    work.add(relax(stage.problem, StepOptions(first=1.0)))
     return begun.vector

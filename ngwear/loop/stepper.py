@@ -6,29 +6,26 @@ import logging
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.stepping import StepOptions
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
-from ngwear.loop.bearable_friction import advance_while_sliding
+from ngwear.loop.carried_state import settle_carried
 from ngwear.loop.element_sizes import coarse_for_mounting, with_contact_lengths, with_mounting_lengths, with_patch
 from ngwear.loop.finer_mesh import (
-    advance_on_finer,
     keep_as_it_is,
     may_be_finer,
     refine_at,
     refine_everywhere,
     unresolved,
 )
+from ngwear.loop.first_cycle import first_cycle
 from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import (
     give_memory,
-    mount,
     refuse_closed_inlets,
     refuse_idle_contacts,
     unworn_body,
@@ -37,9 +34,9 @@ from ngwear.loop.mounting import (
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
 from ngwear.loop.stage import Stage
-from ngwear.loop.state import Phase, State, StrokeReport
+from ngwear.loop.state import State, StrokeReport
 from ngwear.loop.stroke_report import stroke_report
-from ngwear.loop.stroke_solve import recorder, settle_last_stroke, solve_stroke, steps_for
+from ngwear.loop.stroke_solve import settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.boundary import GO_ON
 from ngwear.scene.scene import Scene
@@ -53,11 +50,10 @@ if TYPE_CHECKING:  # modules of effects that a scene does not have are not impor
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
-# These were settled on the rod seal (NARROWER, FIRST), an O-ring (AT_ONCE), an X-ring (MOVING) and the torn seal
+# These were settled on the rod seal (NARROWER, FIRST), an O-ring (AT_ONCE) and the torn seal
 # (LATE): the list in tests/benchmarks/README.md says by which command.
 NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
 AT_ONCE = 3.0  # times as short as on the last mesh are the patch's edges of the next, if the part has room to move
-MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
 FIRST = 10  # times as long as the first step is the longest one
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 
@@ -118,7 +114,7 @@ class Stepper:
         control = JumpControl(tolerances.wear_error, depth=tolerances.depth_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
-        self._first_cycle(state, self.on_mount)
+        first_cycle(state, self.on_mount, self._lost_elements)
         refuse_idle_contacts(state)
         refuse_closed_inlets(state)
         if scene.deactivation is None:
@@ -130,33 +126,6 @@ class Stepper:
             give_memory(state, scene, arms)
         self.on_mount(1.0)
         return state
-
-    def _first_cycle(self, state: State, on_mount: Callable[[float], None]) -> None:
-        """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
-        cycle, begin = self.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
-        state.phases = []
-        state.stage.leave_fluid(np.empty((0, 3)))
-        state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
-        if self._lost_elements is not None:
-            self._lost_elements.begin(state)
-        for i, stroke in enumerate(cycle):
-            stage, halved = state.stage, state.halved
-            begin = stage.problem.state.vec.FV().NumPy().copy()
-            stage.begin(begin)
-            stage.leave_fluid(stage.fluid_left())
-            path: list[tuple[float, Array]] = []
-            on_step = recorder(stage.problem, path)
-            loads = stage.stroke_loads(stroke)
-            options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
-            work, whole = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
-            stage = state.stage
-            state.work.add(work)
-            needed = i > 0 and work.retries > 0 and stage.has_stick_slip and self.scene.deactivation is None
-            needed &= whole and state.halved == halved  # the way with other friction, or on another mesh, is of no use
-            path = path if needed else []
-            vector = stage.problem.state.vec.FV().NumPy().copy()
-            state.phases.append(Phase(vector, path=path, passed=stage.fluid_passed(), left=stage.fluid_left()))
-            on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
 
     def _refine(self, state: State) -> None:
         """Remesh until the mesh is fine enough for all strokes of the cycle."""
@@ -189,23 +158,35 @@ class Stepper:
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
     def settle_on_new_mesh(self, state: State) -> None:
-        """Settle the cycle from the states carried over, or mount anew: where friction sticks, before load steps."""
-        carried, sticks = state.saved(), bool(state.stage.floats) and state.stage.has_stick_slip
+        """Settle the cycle from the states carried over.
+
+        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew.
+        """
+        carried, floats = state.saved(), bool(state.stage.floats)
+        sticks = floats and state.stage.has_stick_slip
         try:
-            self._settle_cycle(state, at_once=sticks)
+            self._settle_cycle(state, at_once=floats)
+            return
         except ConvergenceError as error:
-            if not state.stage.floats:
+            if not floats:
                 raise
+            log.info("%s: held back on the new mesh", error)
+        state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})
+        try:
+            settle_carried(state)
+            self._settle_cycle(state, at_once=sticks)
+            return
+        except ConvergenceError as error:
             log.info("%s: mounting anew on this mesh", error)
-            try:
-                state.stage.problem.state.vec[:] = 0.0
-                self._first_cycle(state, lambda fraction: None)
-                self._settle_cycle(state)
-            except ConvergenceError:
-                if not sticks:
-                    raise
-                state.restore(carried)
-                self._settle_cycle(state)
+        try:
+            state.stage.problem.state.vec[:] = 0.0
+            first_cycle(state, lambda fraction: None, self._lost_elements)
+            self._settle_cycle(state)
+        except ConvergenceError:
+            if not sticks:
+                raise
+            state.restore(carried)
+            self._settle_cycle(state)
 
     def _resolves(self, state: State) -> bool:
         """Settle the cycle on finer elements where the last solves ask for them; False if none do, or it fails."""
@@ -214,7 +195,7 @@ class Stepper:
         coarse = state.saved()
         try:
             refine_at(state, found)
-            self._settle_cycle(state)
+            self.settle_on_new_mesh(state)
         except (ConvergenceError, MeshError) as error:
             log.info("%s: back to the coarser elements", error)
             state.restore(coarse)

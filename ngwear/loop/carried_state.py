@@ -1,0 +1,67 @@
+"""States carried over to a new mesh: brought near their equilibrium there by springs that hold the outline."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.newton import NewtonOptions, Report, iterate
+from ngwear.equilibrium.problem import Problem
+from ngwear.loop.state import State
+
+Array = NDArray[np.float64]
+
+# Of G / L: the first springs hold the outline while the section beneath finds its stresses, the last hardly anything.
+STRENGTHS = (1000.0, 30.0, 1.0)
+ROUNDED = 0.1  # of G: corners of the laws on the way, so that contact on the new mesh does not alternate
+
+
+def let_go(problem: Problem) -> list[Report]:
+    """Bring the present state near equilibrium: springs hold the outline at where it was, weaker ones each time.
+
+    The corners of the laws are rounded off. Pseudo-transient continuation (Kelley & Keyes, *SIAM J. Numer. Anal.* 35
+    (1998) 508). Only a part with room to move has such springs. If a solve fails, the state is that before it, and the
+    last report is that failure's.
+    """
+    reports: list[Report] = []
+    vector = problem.state.vec.FV().NumPy()
+    for term in problem.terms:
+        term.prepare()
+        term.attempt(0)
+    try:
+        with problem.threads():
+            for strength in STRENGTHS:
+                before = vector.copy()
+                for term in problem.terms:
+                    term.hold_back(strength)
+                    term.round_off(ROUNDED)
+                reports.append(iterate(problem, NewtonOptions(damped=True)))
+                if not reports[-1].converged:
+                    vector[:] = before
+                    break
+    finally:
+        for term in problem.terms:
+            term.hold_back(0.0)
+            term.round_off(0.0)
+    return reports
+
+
+def settle_carried(state: State) -> None:
+    """Let go the end of each stroke of the cycle, as carried over to a new mesh, from the last one on.
+
+    A point that sticks at the end of the last stroke stays where it is.
+    """
+    stage, cycle = state.stage, state.stage.scene.program.cycle
+    vector = stage.problem.state.vec.FV().NumPy()
+    for i in range(-1, len(cycle) - 1):
+        phase, before = state.phases[i], state.phases[i if i < 0 else i - 1]
+        stage.begin(before.vector)
+        stage.leave_fluid(before.left)
+        stage.problem.set_loads(stage.stroke_loads(cycle[i]))
+        stage.let_fluid_pass(phase.passed)
+        vector[:] = phase.vector
+        for term in stage.problem.terms:
+            term.refresh()
+        for report in let_go(stage.problem):
+            state.work.count(report)
+        phase.vector = vector.copy()

@@ -1,0 +1,50 @@
+"""The first cycle on a mesh: the part is mounted, and each stroke is solved once, in load steps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ngwear.equilibrium.stepping import StepOptions
+from ngwear.loop.bearable_friction import advance_while_sliding
+from ngwear.loop.finer_mesh import advance_on_finer
+from ngwear.loop.mounting import mount
+from ngwear.loop.state import Phase, State
+from ngwear.loop.stroke_solve import recorder, steps_for
+
+Array = NDArray[np.float64]
+
+# Settled on an X-ring: the list in tests/benchmarks/README.md says by which command.
+MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
+
+
+def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> None:
+    """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
+    cycle, begin = state.stage.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
+    state.phases = []
+    state.stage.leave_fluid(np.empty((0, 3)))
+    state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
+    if lost_elements is not None:
+        lost_elements.begin(state)
+    for i, stroke in enumerate(cycle):
+        stage, halved = state.stage, state.halved
+        begin = stage.problem.state.vec.FV().NumPy().copy()
+        stage.begin(begin)
+        stage.leave_fluid(stage.fluid_left())
+        path: list[tuple[float, Array]] = []
+        on_step = recorder(stage.problem, path)
+        loads = stage.stroke_loads(stroke)
+        options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
+        work, whole = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
+        stage = state.stage
+        state.work.add(work)
+        needed = i > 0 and work.retries > 0 and stage.has_stick_slip and stage.scene.deactivation is None
+        needed &= whole and state.halved == halved  # the way with other friction, or on another mesh, is of no use
+        path = path if needed else []
+        vector = stage.problem.state.vec.FV().NumPy().copy()
+        state.phases.append(Phase(vector, path=path, passed=stage.fluid_passed(), left=stage.fluid_left()))
+        on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
