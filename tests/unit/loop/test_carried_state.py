@@ -1,0 +1,86 @@
+"""States carried over to a new mesh."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import ngwear as nw
+from ngwear.equilibrium.attempts import solve
+from ngwear.errors import ConvergenceError
+from ngwear.loop import stepper
+from ngwear.loop.carried_state import STRENGTHS, let_go, settle_carried
+from ngwear.loop.finer_mesh import refine_everywhere
+from ngwear.loop.stepper import Stepper
+
+
+@pytest.fixture(scope="module")
+def ring():
+    scene = nw.read_scene("geometries/o_ring/scene.toml")
+    return replace(scene, accuracy=nw.Accuracy.draft(), program=replace(scene.program, strokes=2))
+
+
+@pytest.fixture
+def carried(ring):
+    state = Stepper(ring).start()
+    before = push(state)
+    refine_everywhere(state)
+    return state, before
+
+
+def push(state):
+    return float(state.reports[-1].forces["air wall"][0])
+
+
+def set_last(state):
+    stage, last = state.stage, state.phases[-1]
+    stage.problem.set_loads(stage.stroke_loads(stage.scene.program.cycle[-1]))
+    stage.begin(last.vector)
+    stage.let_fluid_pass(last.passed)
+    stage.problem.state.vec.FV().NumPy()[:] = last.vector
+    for term in stage.problem.terms:
+        term.refresh()
+    return stage.problem
+
+
+def test_springs_that_let_go_leave_nothing_behind(carried):
+    state, _ = carried
+    problem = set_last(state)
+    reports = let_go(problem)
+    assert all(report.converged for report in reports[-len(STRENGTHS) :])
+    near = problem.state.vec.FV().NumPy().copy()
+    assert solve(problem).converged
+    there = problem.state.vec.FV().NumPy()
+    moved = np.abs(there - near)[: problem.fields["displacement"].space.ndof].max()
+    assert moved < 0.05 * problem.body.size
+    forces = state.stage.forces()  # without the springs they balance
+    assert abs(sum(forces.values())[0]) < 1e-6 * max(np.abs(force).max() for force in forces.values())
+
+
+def test_the_cycle_settles_from_carried_states(ring, carried, monkeypatch):
+    state, before = carried
+    monkeypatch.setattr(stepper, "first_cycle", None)  # not mounted anew
+    Stepper(ring).settle_on_new_mesh(state)
+    assert push(state) == pytest.approx(before, rel=0.05)
+
+
+def test_else_it_is_mounted_anew(ring, carried, monkeypatch):
+    state, before = carried
+
+    def fails(state):
+        raise ConvergenceError("no equilibrium")
+
+    monkeypatch.setattr(stepper, "settle_carried", fails)
+    settle = Stepper._settle_cycle
+    monkeypatch.setattr(
+        Stepper, "_settle_cycle", lambda self, state, at_once=False: fails(state) if at_once else settle(self, state)
+    )
+    Stepper(ring).settle_on_new_mesh(state)
+    assert push(state) == pytest.approx(before, rel=0.05)
+
+
+def test_every_stroke_is_carried(carried):
+    state, _ = carried
+    vectors = [phase.vector for phase in state.phases]
+    settle_carried(state)
+    assert all((phase.vector != vector).any() for phase, vector in zip(state.phases, vectors, strict=True))
