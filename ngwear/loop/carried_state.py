@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 
 # Of G / L: the first springs hold the outline while the section beneath finds its stresses, the last hardly anything.
 STRENGTHS = (1000.0, 30.0, 1.0)
+HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
 
 def let_go(problem: Problem) -> list[Report]:

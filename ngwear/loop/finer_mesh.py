@@ -15,7 +15,7 @@ from ngwear.equilibrium.newton import Report
 from ngwear.equilibrium.problem import Loads
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError
-from ngwear.loop.carried_state import let_go
+from ngwear.loop.carried_state import HARDEST, let_go
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.solution_checks import Finding
 from ngwear.loop.state import Phase, State
@@ -50,7 +50,7 @@ def refine_everywhere(state: State) -> None:
     points = state.stage.problem.points
     points.follow()
     remesh(state, scene=state.stage.scene, fine=np.column_stack([points.centres, FINER * points.edges]))
-    state.halved, state.mesh_errors = state.halved + 1, {}
+    state.halved += 1
 
 
 def unresolved(state: State) -> list[Finding]:
@@ -71,7 +71,7 @@ def refine_at(state: State, found: Sequence[Finding]) -> None:
     """
     asked = [finding.places * (1.0, 1.0, FINER) for finding in found]
     remesh(state, scene=state.stage.scene, fine=np.vstack([state.fine, *asked]))
-    state.refined, state.mesh_errors = state.refined + 1, {}
+    state.refined += 1
 
 
 def keep_as_it_is(state: State) -> None:
@@ -137,5 +137,5 @@ def _carry_on(state: State, begin: Array, work: Work) -> Array:
         term.refresh()
     for report in let_go(stage.problem):
         work.count(report)
-    work.add(relax(stage.problem, StepOptions(first=1.0)))
+    work.add(relax(stage.problem, StepOptions(first=1.0, smallest=HARDEST)))
     return begun.vector

@@ -2,7 +2,9 @@
 
 Coarser runs may all miss what the elements of none of them resolve, and then agree. The change of peak pressures, loads
 and widths with half the edges does not depend on them. First order is assumed: the error is twice that change. It is
-computed before the first stroke, after which wear evens the pressures out; if that fails, after the last one.
+computed before the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how
+much of the largest wear per cycle is left at the end. A worn outline has points for its own elements only, so that
+finer ones show peaks that are none; it is used if there is no equilibrium on the finer ones before.
 
 Only for parts with room to move, which are mounted on coarse elements.
 """
@@ -47,6 +49,17 @@ def add_mesh_errors(state: State) -> None:
         Stepper(state.stage.scene).restore_last_stroke(state)
     changes = relative_errors(mine, other)
     state.mesh_errors = {f"{name[:-4]} {BY_HALVED}": REMAINS * change for name, change in changes.items()}
+    state.first_wear = _largest_wear(mine)
+
+
+def faded(state: State) -> dict[str, float]:
+    """``State.mesh_errors`` times what is left at the end of the largest wear per cycle when they were computed."""
+    left = min(1.0, _largest_wear(_read(state)) / state.first_wear) if state.first_wear > 0 else 1.0
+    return {name: left * error for name, error in state.mesh_errors.items()}
+
+
+def _largest_wear(read: Read) -> float:
+    return max((float(np.max(wear)) for wear in read.get(DEPTH, {}).values()), default=0.0)
 
 
 def _on_halved(state: State) -> State:

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.loop.checkpoint import load, save
-from ngwear.loop.halved_elements import add_mesh_errors
+from ngwear.loop.halved_elements import add_mesh_errors, faded
 from ngwear.loop.result import Result
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
@@ -142,7 +142,9 @@ def run(
     summary: dict[str, Any] = {"status": status, "message": message, "scene": scene.name, "strokes": 0, **times}
     if state is not None:
         summary = recorder.summary(state, status, message)
-        summary["error estimates"] |= by_time_step | state.mesh_errors
+        summary["error estimates"] |= by_time_step
+        if error is None and errors is not None:
+            summary["error estimates"] |= faded(state)
         summary["warnings"] += warnings
     if folder is not None:
         folder.finish(recorder, summary)

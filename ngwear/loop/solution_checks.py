@@ -26,7 +26,7 @@ DEEP = 0.01  # of the mesh edge there: overlap with a surface
 UNLISTED = ", whose edges do not name it: name it there, or give no edges, so that any may touch"
 COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node
-ALTERNATES = 4  # nodes in a row whose second difference changes sign: a smooth pressure does so once or twice
+ALTERNATES = 3  # nodes in a row whose second differences change sign: two bumps on five nodes are not resolved
 UNBALANCED = 1e-5  # of the largest force: sum of all forces where no support takes a part of it
 # What friction does that a part does not bear, and what follows.
 ROLLS, CREASES, CRUSHES = "rolls the part over", "creases the surface", "crushes elements"

@@ -167,7 +167,8 @@ class State:
     ``fatigue`` is the accumulated damage of each element, and ``strained`` that of the present cycle so far [-]; both
     are empty unless damage accumulates over cycles. ``fine``, shape (k, 3), are places and the element edges that
     solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
-    ``mesh_errors`` are relative errors by the mesh, by name (``ngwear.loop.halved_elements``).
+    ``mesh_errors`` are relative errors by the mesh, by name, and ``first_wear`` [N] is the largest wear per cycle when
+    they were computed (``ngwear.loop.halved_elements``).
     """
 
     stage: Stage
@@ -187,6 +188,7 @@ class State:
     halved: int = 0
     refined: int = 0
     mesh_errors: dict[str, float] = field(default_factory=dict)
+    first_wear: float = 0.0
 
     @property
     def background(self) -> Background | None:

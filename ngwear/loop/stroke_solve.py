@@ -15,6 +15,7 @@ from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError
 from ngwear.loop.bearable_friction import takes_less
+from ngwear.loop.carried_state import HARDEST
 from ngwear.loop.state import State
 from ngwear.scene.program import Stroke
 from ngwear.wear.cycle_jumps import Plan
@@ -26,7 +27,6 @@ log = logging.getLogger(__name__)
 EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is the pressure that a pocket keeps
 # Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
-HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
 
 def solve_stroke(
