@@ -31,7 +31,11 @@ def _parser() -> argparse.ArgumentParser:
     run.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for the results")
     run.add_argument("--resume", action="store_true", help="continue the run in DIR")
     run.add_argument("--quiet", action="store_true", help="no progress bar")
-    run.add_argument("--alone", action="store_true", help="no coarser runs: the error of the mesh is not estimated")
+    run.add_argument(
+        "--alone",
+        action="store_true",
+        help="no coarser runs: the error of the mesh is estimated for a part with room to move only",
+    )
     run.add_argument(
         "--accuracy",
         metavar="PRESET|ERROR",
