@@ -85,7 +85,7 @@ def _work(pipe: Connection, modules: tuple[str, ...]) -> None:
 
     def receive() -> None:  # at once, since a call with much data would stop its sender until this process reads it
         try:
-            with suppress(EOFError):  # the pipe is closed
+            with suppress(EOFError, OSError):  # the pipe is closed, perhaps with a reply that nobody has read
                 while True:
                     calls.put(pipe.recv())
         finally:
