@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from ngwear.geometry.outline import Outline
 from ngwear.parallel.workers import ONE_THREAD
+from ngwear.scene.accuracy import Accuracy
 from ngwear.scene.read_scene import read_scene
 
 TESTS = Path(__file__).parent
@@ -166,6 +168,13 @@ def sheet(sheet_file):
 def fine_sheet(tmp_path):
     """The small scene with about twice the elements."""
     return read_scene(_write_sheet(tmp_path / "fine", *FINE))
+
+
+@pytest.fixture(scope="session")
+def ring():
+    """The shipped O-ring, a part with room to move, for one cycle with few elements."""
+    scene = read_scene("geometries/o_ring/scene.toml")
+    return replace(scene, accuracy=Accuracy.preset("draft"), program=replace(scene.program, strokes=2))
 
 
 @pytest.fixture(scope="session")

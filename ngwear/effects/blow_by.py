@@ -36,7 +36,7 @@ class BlowBy:
 
 @dataclass(frozen=True)
 class BarelyHeld:
-    """A ridge of contact pressure that holds a fluid hardly, with a part of the contact behind it that would not.
+    """A ridge of contact pressure that just holds a fluid, with a part of the contact behind it that would not.
 
     Attributes
     ----------

@@ -24,6 +24,8 @@ FIRST, LOOSE = 1.0, 2e-4
 WEAKER, FAR = 4.0, 0.1  # factor between two steps; motion of a step, over the section's size, that is aimed at
 ABOVE, GROWS = 2.0, 1.2  # times a strength that failed: the least one; by what that falls in each step
 STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a strength: an equilibrium is near
+# Of G / L: the first springs hold the outline while the section beneath finds its stresses, the last hardly anything.
+STRENGTHS = (1000.0, 30.0, 1.0)
 QUARTER = 90.0  # degrees: from there on a ring resists turning with a moment that falls
 FAILURES, MOST = 4, 400  # failures in a row, and iterations, until it ends
 
@@ -151,6 +153,44 @@ def _move_over(problem: Problem, options: NewtonOptions) -> Report:
     if strength > 0.0 and report.converged:
         report.outcome = Outcome.TOO_MANY_ITERATIONS
     return report
+
+
+def let_go(problem: Problem) -> list[Report]:
+    """Bring the present state near equilibrium: springs hold the outline at where it was, weaker ones each time.
+
+    For a state carried over to a new mesh. The corners of the laws are rounded off meanwhile, by the first of
+    ``ROUNDED`` with which all solves converge, so that contact does not alternate there. Only a part with room to move
+    has such springs. If they fail, the state is the present one, and the last report is a failure's.
+    """
+    reports: list[Report] = []
+    for term in problem.terms:
+        term.prepare()
+        term.attempt(0)
+    try:
+        with problem.threads():
+            for rounded in ROUNDED:
+                _round_off(problem, rounded)
+                reports += _let_go(problem)
+                if reports[-1].converged:
+                    break
+    finally:
+        _hold_back(problem, 0.0)
+        _round_off(problem, 0.0)
+    return reports
+
+
+def _let_go(problem: Problem) -> list[Report]:
+    """The same with the laws as they are; after a failure the state is the first one."""
+    reports: list[Report] = []
+    vector = problem.state.vec.FV().NumPy()
+    before = vector.copy()
+    for strength in STRENGTHS:
+        _hold_back(problem, strength)
+        reports.append(iterate(problem, NewtonOptions(damped=True)))
+        if not reports[-1].converged:
+            vector[:] = before
+            break
+    return reports
 
 
 def _hold_back(problem: Problem, strength: float) -> None:

@@ -27,7 +27,7 @@ ROLLS_OVER = (
     "slides, or give it less room along the axis"
 )
 ROLLS = 45.0  # degrees: a ring resists turning with a moment that grows less and less, up to a quarter of a turn
-CRUSHED = 0.1  # J of an element: no shorter load step leads on from there; rubber bears no such compression
+COLLAPSED = 0.1  # J of an element: no shorter load step leads on from there; rubber bears no such compression
 NEAR = 1.03  # times the creasing stretch: the last equilibrium counts as near it up to here
 
 
@@ -110,9 +110,9 @@ def has_room(problem: Problem) -> bool:
     return any(isinstance(term, RigidMotion) for term in problem.terms)
 
 
-def is_crushed(problem: Problem) -> bool:
+def has_collapsed(problem: Problem) -> bool:
     """Whether an element has lost nearly all of its volume."""
-    return bool(problem.jacobians().min() < CRUSHED)
+    return bool(problem.jacobians().min() < COLLAPSED)
 
 
 def creases(problem: Problem, stretch: float = CREASING) -> bool:

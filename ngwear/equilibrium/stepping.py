@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ngwear.equilibrium.attempts import solve
-from ngwear.equilibrium.diagnosis import ROLLS_OVER, creases, diagnosis, has_room, is_crushed, rolls
+from ngwear.equilibrium.diagnosis import ROLLS_OVER, creases, diagnosis, has_collapsed, has_room, rolls
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
@@ -146,7 +146,7 @@ def advance(
             step /= 2
             beyond = report.outcome is Outcome.ROLLED
             if has_room(problem):
-                beyond |= is_crushed(problem) or (step < SHORTEST and creases(problem))
+                beyond |= has_collapsed(problem) or (step < SHORTEST and creases(problem))
             if step < options.smallest or beyond:
                 problem.set_loads({name: start[name] + done * (target[name] - start[name]) for name in target})
                 way = f"no equilibrium between {done:.1%} and {goal:.1%} of the load step to {dict(target)}"

@@ -11,11 +11,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.equilibrium.attempts import let_go
 from ngwear.equilibrium.newton import Report
 from ngwear.equilibrium.problem import Loads
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError
-from ngwear.loop.carried_state import HARDEST, let_go
+from ngwear.loop.carried_state import HARDEST
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.solution_checks import Finding
 from ngwear.loop.state import Phase, State

@@ -226,9 +226,9 @@ def _barely_held(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     """A fluid that a contact holds by less than its pressure errs by: on other elements it may come in further."""
     for held in stage.barely_held():
         sentence = (
-            f"stroke '{stroke.name}': the contact at '{held.edge}' holds the {held.pressure:.3g} MPa of '{held.inlet}' "
-            f"with hardly more, {held.ridge:.3g} MPa, and behind it carries only {held.behind:.3g} MPa: the fluid may "
-            f"come in up to '{held.next_edge}', and pressures and wear would be others; compare with a finer accuracy"
+            f"stroke '{stroke.name}': the contact at '{held.edge}' carries {held.ridge:.3g} MPa where it holds the "
+            f"{held.pressure:.3g} MPa of '{held.inlet}', and only {held.behind:.3g} MPa behind: the fluid may come in "
+            f"up to '{held.next_edge}', and pressures and wear would be others; compare with a finer accuracy"
         )
         over = held.ridge / held.pressure - 1
         yield Finding(f"barely held {stroke.name} {held.inlet} {held.edge}", 1 - over, sentence)

@@ -1,4 +1,4 @@
-"""A fluid that a contact holds with hardly more than its pressure."""
+"""A fluid that a contact just holds."""
 
 from types import SimpleNamespace
 

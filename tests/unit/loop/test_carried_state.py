@@ -1,23 +1,14 @@
 """States carried over to a new mesh."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-import ngwear as nw
-from ngwear.equilibrium.attempts import solve
+from ngwear.equilibrium.attempts import STRENGTHS, let_go, solve
 from ngwear.errors import ConvergenceError
 from ngwear.loop import stepper
-from ngwear.loop.carried_state import STRENGTHS, let_go, settle_carried
+from ngwear.loop.carried_state import settle_carried
 from ngwear.loop.finer_mesh import refine_everywhere
 from ngwear.loop.stepper import Stepper
-
-
-@pytest.fixture(scope="module")
-def ring():
-    scene = nw.read_scene("geometries/o_ring/scene.toml")
-    return replace(scene, accuracy=nw.Accuracy.draft(), program=replace(scene.program, strokes=2))
 
 
 @pytest.fixture

@@ -16,12 +16,6 @@ from ngwear.loop.stepper import Stepper
 
 
 @pytest.fixture(scope="module")
-def ring():
-    scene = nw.read_scene("geometries/o_ring/scene.toml")
-    return replace(scene, accuracy=nw.Accuracy.draft(), program=replace(scene.program, strokes=2))
-
-
-@pytest.fixture(scope="module")
 def whole(ring):
     return Stepper(ring).start()
 

@@ -17,12 +17,6 @@ from ngwear.scene.accuracy import Accuracy
 BY_DEPTH, BY_PEAK = (f"{name[:-4]} {BY_HALVED}" for name in (DEPTH, PEAK))
 
 
-@pytest.fixture(scope="module")
-def ring():
-    scene = nw.read_scene("geometries/o_ring/scene.toml")
-    return replace(scene, accuracy=nw.Accuracy.draft(), program=replace(scene.program, strokes=2))
-
-
 @pytest.fixture
 def mounted(ring):
     return Stepper(ring).start()
