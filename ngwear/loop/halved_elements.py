@@ -36,7 +36,7 @@ def add_mesh_errors(state: State) -> None:
 
     They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; the error
     of the depth is that of the largest wear per cycle. Not for a part that is held, or rubber with memory;
-    none where the cycle has no equilibrium on the finer elements.
+    none where its states do not settle on the finer elements: to mount it there may take longer than the run.
     """
     if state.mesh_errors or state.memory is not None or not remeshes(state):
         return
@@ -68,7 +68,7 @@ def _on_halved(state: State) -> State:
     there.work, there.ledger = copy(state.work), state.ledger.copy()
     there.phases = [replace(phase) for phase in state.phases]
     refine_everywhere(there)
-    Stepper(state.stage.scene).settle_on_new_mesh(there)
+    Stepper(state.stage.scene).settle_on_new_mesh(there, anew=False)
     return there
 
 

@@ -157,10 +157,15 @@ class Stepper:
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
-    def settle_on_new_mesh(self, state: State) -> None:
+    def settle_on_new_mesh(self, state: State, *, anew: bool = True) -> None:
         """Settle the cycle from the states carried over.
 
         A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew.
+
+        Raises
+        ------
+        ConvergenceError
+            If it finds no equilibrium, or needs to be mounted ``anew`` and may not.
         """
         carried, floats = state.saved(), bool(state.stage.floats)
         sticks = floats and state.stage.has_stick_slip
@@ -174,9 +179,11 @@ class Stepper:
         state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})
         try:
             settle_carried(state)
-            self._settle_cycle(state, at_once=sticks)
+            self._settle_cycle(state, at_once=sticks or not anew)
             return
         except ConvergenceError as error:
+            if not anew:
+                raise
             log.info("%s: mounting anew on this mesh", error)
         try:
             state.stage.problem.state.vec[:] = 0.0
