@@ -104,7 +104,7 @@ class RigidMotion(Term):
     def _free_share(self, contact: OutlineContact, way: Array) -> float:
         """Share of a translation [mm] after which the contact's edges lie a mesh edge deeper in its surface."""
         length = float(np.linalg.norm(way))
-        place = contact.ends_in_frame().reshape(2, -1)
+        place = contact.vertices_in_frame().reshape(2, -1)
         floor = np.minimum(contact.surface.gap(*place), 0.0) - contact.finest
         share, most = 0.0, min(1.0, FARTHEST * self._size / length) if length > 0 else 1.0
         while share < most:  # the gap is a distance: a step of this length does not pass the surface

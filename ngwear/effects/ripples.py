@@ -54,6 +54,9 @@ class Ripples:
     def gather(self) -> None:
         """Take P_s from the present state."""
         nodes, nodal = self._contact.nodes, self._contact.nodal_pressure()
+        if not nodal.any():
+            self._smooth.vec[:] = 0.0
+            return
 
         def averaged(nodal: Array) -> Array:
             return nodes.average(np.repeat(nodal[nodes.of_edges].mean(axis=1), 2))

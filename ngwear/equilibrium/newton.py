@@ -29,6 +29,7 @@ class Outcome(enum.Enum):
 
 
 SHORTEST = 1 / 64  # of a damped correction; it is taken even if the next one is longer
+LONGER = 4.0  # times the share taken of a damped correction: the first one tried of the next
 HALVINGS = 7  # of a correction that would fold an element: to 1/64 of it; shorter ones get nowhere
 # The next four change the time, hardly the result: settled on the rod seal and the shaft, whose
 # steps took 5.2 iterations with LEAVES = 0.01 and 4.7 with 0.02 (``verify shaft_on_plate``; tutorial 2 for SMALL).
@@ -109,6 +110,7 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
         return report
     kept, solver = False, problem.solver if options.reuse else None
     left = 1.0 if solver is None else 0.0
+    goal, longest = options.tolerance * size, 1.0
     for report.iterations in range(1, options.max_iterations + 1):
         kept = left <= EXACT if options.reuse else _will_do(report.corrections, nearly, kept=kept)
         if not kept:
@@ -122,7 +124,9 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
             break
         problem.limit(correction)
         before = solver.scaled_norm(residual) if options.reuse else 0.0
-        step, trial.data = 1.0, vector
+        asked = float(np.abs(correction.FV().NumPy()[u]).max())
+        damps = options.damped and not kept and asked > goal  # below it, rounding decides which correction is shorter
+        step, trial.data = longest if damps else 1.0, vector
         for _ in range(HALVINGS):
             vector.data = trial - step * correction
             problem.residual(residual)
@@ -133,9 +137,9 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
         else:
             report.outcome = Outcome.FOLDED
             break
-        goal, asked = options.tolerance * size, float(np.abs(correction.FV().NumPy()[u]).max())
-        if options.damped and not kept and asked > goal:  # below it, rounding decides which correction is shorter
+        if damps:
             step = _damped(problem, solver, correction, trial, step, residual)
+            longest = min(1.0, LONGER * step)
             report.residual = norm(residual)
         left = min(1.0, solver.scaled_norm(residual) / before) if before > 0 else 1.0
         change = step * asked

@@ -113,7 +113,7 @@ def advance(
     last = vector.CreateVector()
     rate = vector.CreateVector()
     last.data = vector
-    have_rate = stands = False
+    have_rate = stands = leaps = False
     changes = any(start[name] != target[name] for name in target)
     done, step, work = 0.0, options.first if changes else 1.0, Work()
     loose = options.newton.tolerance * LOOSER
@@ -124,15 +124,15 @@ def advance(
         step = min(step, 1.0 - done)
         if 1.0 - done - step < 1e-9:
             step = 1.0 - done
-        goal = done + step
+        goal = 1.0 if leaps else done + step
         problem.set_loads({name: start[name] + goal * (target[name] - start[name]) for name in target})
-        problem.set_time_step(step * duration)
+        problem.set_time_step((goal - done) * duration)
         if have_rate:
             vector.data = last + step * rate
         # With an imbalance load the fluid front stays: moving it would change that load.
         update = IMBALANCE not in target or goal == 1.0
         here = options if goal == 1.0 else on_the_way
-        moves = step <= SHORT and (not stands or step < 2 * options.smallest)
+        moves = leaps or step < 2 * options.smallest
         here = replace(here, newton=replace(here.newton, moves=moves))
         gradually = step <= SHORT  # a longer one is halved first
         report = settle(problem, here, work, update=update, gradually=gradually)
@@ -140,11 +140,16 @@ def advance(
             vector.data = last
             report = settle(problem, here, work, update=update, gradually=gradually)
         if not report.converged:
-            stands |= moves  # that takes long: once more on the shortest step
             vector.data = last
             have_rate = False
+            leapt = leaps
+            stands |= leapt
+            # Where the part moves over to another equilibrium, the loads on the way there say little: all at once.
+            leaps = not stands and step <= SHORT and goal < 1.0 and IMBALANCE not in target and has_room(problem)
+            if leaps:
+                continue
             step /= 2
-            beyond = report.outcome is Outcome.ROLLED
+            beyond = report.outcome is Outcome.ROLLED and not leapt
             if has_room(problem):
                 beyond |= has_collapsed(problem) or (step < SHORTEST and creases(problem))
             if step < options.smallest or beyond:
@@ -159,7 +164,7 @@ def advance(
             continue
         if update or math.isfinite(duration):
             problem.commit()
-        rate.data = (1 / step) * (vector - last)
+        rate.data = (1 / (goal - done)) * (vector - last)
         last.data = vector
         have_rate = True
         done = goal

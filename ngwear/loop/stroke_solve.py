@@ -126,7 +126,9 @@ def _solves(state: State, guess: Array, work: Work) -> Report:
     _set_guess(state, guess)
     for term in state.stage.problem.terms:
         term.refresh()
-    options = NewtonOptions(rounds=not state.stage.has_stick_slip)  # with stick, load steps take less time
+    stage = state.stage
+    # With stick, load steps take less time, but for a part with room to move, which they may take elsewhere.
+    options = NewtonOptions(rounds=not stage.has_stick_slip or bool(stage.floats), moves=not stage.has_stick_slip)
     return settle(state.stage.problem, StepOptions(newton=options), work)
 
 
