@@ -251,13 +251,13 @@ class Stepper:
             wear = self.scene.wear
             cycles = {"each": 1, "fixed": min(wear.max_jump or 1, left), "jump": state.control.share(left)}[wear.step]
             cycles = steady_cycles(self.scene, state.strokes, min(cycles, most))
-            saved = state.saved()
+            saved, fewer = state.saved(), cycles
             try:
                 ratio = self._step(state, cycles)
             except (ConvergenceError, GeometryError, MeshError) as error:
+                explained = isinstance(error, ConvergenceError) and bool(error.cause)
                 if cycles == 1:
                     state.restore(saved)
-                    explained = isinstance(error, ConvergenceError) and bool(error.cause)
                     if coarser is None and (explained or not may_be_finer(state)):
                         raise
                     log.info("step of one cycle failed (%s); tried on other elements", error)
@@ -268,11 +268,13 @@ class Stepper:
                         keep_as_it_is(state)
                         coarser = None
                     continue
-                log.info("step of %d cycles failed (%s); half as many are tried", cycles, error)
+                log.info("step of %d cycles failed (%s); fewer are tried", cycles, error)
                 ratio = math.inf
+                if explained and state.stage.floats:
+                    fewer = 2  # a surface that creases, or a part that rolls, does so in one cycle, too
             if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
                 state.restore(saved)
-                most = state.control.cut(cycles)
+                most = state.control.cut(fewer)
                 continue
             if found := unresolved(state):
                 state.restore(saved)
