@@ -213,7 +213,7 @@ def _blow_by(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
         what = f"stroke '{stroke.name}': the {blown.pressure:.3g} MPa of '{blown.inlet}'"
         if blown.holds > 0:
             sentence = f"would open the contact at '{blown.edge}', which carries {blown.holds:.3g} MPa at most"
-            sentence += "; the results are for a seal that does not open"
+            sentence += "; the results are for a seal that does not open, and so are their stated errors"
         elif blown.meets:
             sentence = f"meets the fluid of inlet '{blown.meets}', which has less; no contact is between them"
         else:
@@ -228,7 +228,8 @@ def _barely_held(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
         sentence = (
             f"stroke '{stroke.name}': the contact at '{held.edge}' carries {held.ridge:.3g} MPa where it holds the "
             f"{held.pressure:.3g} MPa of '{held.inlet}', and only {held.behind:.3g} MPa behind: the fluid may come in "
-            f"up to '{held.next_edge}', and pressures and wear would be others; compare with a finer accuracy"
+            f"up to '{held.next_edge}', and pressures and wear would be others, by more than the stated errors; "
+            "compare with a finer accuracy"
         )
         over = held.ridge / held.pressure - 1
         yield Finding(f"barely held {stroke.name} {held.inlet} {held.edge}", 1 - over, sentence)
