@@ -155,6 +155,8 @@ class Stepper:
             remesh(state, scene=scene if floats else None)
             self.settle_on_new_mesh(state)
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
+        if state.ledger.remeshes >= levels:  # the last new mesh has not been looked at
+            self._resolves(state)
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
     def settle_on_new_mesh(self, state: State, *, anew: bool = True) -> None:
