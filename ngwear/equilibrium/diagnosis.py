@@ -73,7 +73,9 @@ def _unheld(problem: Problem) -> str:
         if free(values) or free(along):
             directions.append(name)
     if directions:
-        travels.append(f"nothing holds the part {' and '.join(directions)}: add a support or a contact that does")
+        floats = any(isinstance(term, RigidMotion) for term in problem.terms)
+        why = "its contacts slip, or are open" if floats else "add a support or a contact that does"
+        travels.append(f"nothing holds the part {' and '.join(directions)}: {why}")
     return "; ".join(travels)
 
 
