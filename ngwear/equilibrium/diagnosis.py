@@ -74,8 +74,9 @@ def _unheld(problem: Problem) -> str:
             directions.append(name)
     if directions:
         floats = any(isinstance(term, RigidMotion) for term in problem.terms)
-        why = "its contacts slip, or are open" if floats else "add a support or a contact that does"
-        travels.append(f"nothing holds the part {' and '.join(directions)}: {why}")
+        rest = " (its contacts slip, or are open)" if floats else ""
+        ways = " and ".join(directions)
+        travels.append(f"nothing holds the part {ways}: add a support or a contact that does{rest}")
     return "; ".join(travels)
 
 
