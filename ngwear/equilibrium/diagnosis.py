@@ -73,8 +73,7 @@ def _unheld(problem: Problem) -> str:
         if free(values) or free(along):
             directions.append(name)
     if directions:
-        floats = any(isinstance(term, RigidMotion) for term in problem.terms)
-        rest = " (its contacts slip, or are open)" if floats else ""
+        rest = " (its contacts slip, or are open)" if has_room(problem) else ""
         ways = " and ".join(directions)
         travels.append(f"nothing holds the part {ways}: add a support or a contact that does{rest}")
     return "; ".join(travels)

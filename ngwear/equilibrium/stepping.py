@@ -149,7 +149,7 @@ def advance(
             if leaps:
                 continue
             step /= 2
-            beyond = report.outcome is Outcome.ROLLED and not leapt
+            beyond = report.outcome is Outcome.ROLLED and not leapt  # in steps it may get there without
             if has_room(problem):
                 beyond |= has_collapsed(problem) or (step < SHORTEST and creases(problem))
             if step < options.smallest or beyond:

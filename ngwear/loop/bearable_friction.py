@@ -26,7 +26,6 @@ log = logging.getLogger(__name__)
 BELOW = 0.9  # of the most friction that the part bears: wear and a new mesh move that by some per cent
 LOWER = (0.5, 0.25, 0.0)  # times the friction that it did not bear on the way there
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
-AGAIN = 2  # how often the loads are brought on anew with the share found; with less of it the second time
 NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched; less is none
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
 
@@ -179,19 +178,18 @@ def lower_friction(
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
     if held * before < NEAREST:
         raise error
+    less = {name: held * slip for name, slip in slips.items()}
     try:
-        less = {name: held * slip for name, slip in slips.items()}
         work.add(advance(problem, less, StepOptions(first=0.5, smallest=SMALLEST)))
     except ConvergenceError:  # a surface that has creased does not come back by itself
-        for tries_left in reversed(range(AGAIN)):
+        try:
+            work.add(_with_less_friction(stage, target, less, start))
+        except ConvergenceError:
+            held *= BELOW
+            if held * before < NEAREST:
+                raise
             less = {name: held * slip for name, slip in slips.items()}
-            try:
-                work.add(_with_less_friction(stage, target, less, start))
-                break
-            except ConvergenceError:
-                if tries_left == 0 or BELOW * held * before < NEAREST:
-                    raise
-                held *= BELOW
+            work.add(_with_less_friction(stage, target, less, start))
     stage.friction_shares[stroke] = (held * before, why)
     log.info("stroke '%s': friction %s; %.0f %% of it act", stroke, why, 100 * held * before)
     return work

@@ -253,7 +253,7 @@ class Stepper:
             wear = self.scene.wear
             cycles = {"each": 1, "fixed": min(wear.max_jump or 1, left), "jump": state.control.share(left)}[wear.step]
             cycles = steady_cycles(self.scene, state.strokes, min(cycles, most))
-            saved, fewer = state.saved(), cycles
+            saved, to_one = state.saved(), False
             try:
                 ratio = self._step(state, cycles)
             except (ConvergenceError, GeometryError, MeshError) as error:
@@ -272,11 +272,11 @@ class Stepper:
                     continue
                 log.info("step of %d cycles failed (%s); fewer are tried", cycles, error)
                 ratio = math.inf
-                if explained and state.stage.floats:
-                    fewer = 2  # a surface that creases, or a part that rolls, does so in one cycle, too
+                # A surface that creases, or a part that rolls, does so in half of the cycles, too.
+                to_one = explained and bool(state.stage.floats)
             if ratio == math.inf or (self.scene.wear.step == "jump" and not state.control.accepts(ratio, cycles)):
                 state.restore(saved)
-                most = state.control.cut(fewer)
+                most = state.control.cut(cycles, to_one=to_one)
                 continue
             if found := unresolved(state):
                 state.restore(saved)

@@ -68,7 +68,7 @@ class JumpControl:
             factor = min(GROWTH, max(0.3, SAFETY / math.sqrt(off)))  # far off, the square law says little
         self.cycles = int(min(self.longest, max(1, math.floor(factor * cycles + 1e-9))))
 
-    def cut(self, cycles: int) -> int:
-        """Halve the step after a failure; return the cycles of the next one."""
-        self.cycles = max(1, cycles // 2)
+    def cut(self, cycles: int, *, to_one: bool = False) -> int:
+        """Halve the step after a failure, or cut it to one cycle; return the cycles of the next one."""
+        self.cycles = 1 if to_one else max(1, cycles // 2)
         return self.cycles

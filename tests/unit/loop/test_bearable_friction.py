@@ -7,7 +7,9 @@ import pytest
 
 import ngwear as nw
 from ngwear.equilibrium.newton import Outcome, Report
+from ngwear.equilibrium.stepping import Work
 from ngwear.errors import ConvergenceError
+from ngwear.loop import bearable_friction
 from ngwear.loop.bearable_friction import BELOW, Start, is_too_much, lower_friction
 from ngwear.loop.element_sizes import coarse_for_mounting, with_mounting_lengths
 from ngwear.loop.mounting import mount, unworn_body
@@ -79,6 +81,34 @@ def test_friction_that_the_part_bears_is_brought_on_again():
     assert stage.problem.get_loads()["rod slip"] == target["rod slip"]
     friction, load = np.abs(stage.forces()["rod friction"]), np.abs(stage.forces()["rod"])
     assert friction[0] == pytest.approx(0.02 * load[1], rel=1e-3)
+
+
+@pytest.mark.parametrize(("bears", "share"), [(0.23, BELOW * 0.25), (0.21, BELOW**2 * 0.25), (0.1, None)])
+def test_a_share_whose_loads_do_not_come_on_is_lowered_once_more(monkeypatch, bears, share):
+    """It slides with a quarter of the friction, not with more, and with ``bears`` when the loads come on anew."""
+    scene = coarse_for_mounting(with_mounting_lengths(rubbed()))
+    stage, reached = Stage(scene, unworn_body(scene, 6.0)), []
+
+    def comes_on(stage, target, slips, start):
+        if reached and abs(slips["rod slip"]) > bears:
+            raise ConvergenceError("the loads do not come on")
+        reached.append(abs(slips["rod slip"]))
+        return Work()
+
+    def refuses(problem, slips, options):
+        raise ConvergenceError("no other friction")
+
+    monkeypatch.setattr(bearable_friction, "_with_less_friction", comes_on)
+    monkeypatch.setattr(bearable_friction, "advance", refuses)
+    target, rolls = stage.stroke_loads(scene.program.cycle[0]), ConvergenceError("rolls", Report(Outcome.ROLLED))
+    stage.problem.set_loads({"rod slip": 0.5 * target["rod slip"]})
+    if share is None:
+        with pytest.raises(ConvergenceError, match="do not come on"):
+            lower_friction(stage, "outward", target, rolls, Start.of(stage))
+        return
+    lower_friction(stage, "outward", target, rolls, Start.of(stage))
+    assert reached == pytest.approx([0.25, share])
+    assert stage.friction_shares["outward"] == (pytest.approx(share), bearable_friction.ROLLS)
 
 
 def test_a_step_that_is_rejected_leaves_the_shares_as_they_were(stage):

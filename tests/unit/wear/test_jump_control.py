@@ -85,6 +85,10 @@ def test_cut_halves_down_to_one():
     assert control.cycles == 1
 
 
+def test_cut_to_one_is_one_at_once():
+    assert JumpControl(0.01).cut(9, to_one=True) == 1
+
+
 @pytest.mark.parametrize(
     ("cycles", "left", "step"),
     [(10, 100, 10), (10, 10, 10), (10, 12, 12), (10, 13, 7), (10, 24, 12), (10, 25, 10), (10, 3, 3), (1, 1, 1)],
