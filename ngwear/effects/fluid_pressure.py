@@ -201,6 +201,17 @@ class FluidPressure(EdgePressure):
             found.append(beyond if beyond.any() else touching)
         return found
 
+    def on_both_sides(self) -> list[OutlineContact]:
+        """Contacts that touch the inlet's edges alone, and have the fluid on both sides of all their zones."""
+        found, wet = [], self.shares >= 1.0
+        for contact in self.contacts:
+            mine = np.zeros(len(wet), dtype=bool)
+            mine[contact.positions[contact.touching()]] = True
+            ends = (np.roll(mine, 1) | np.roll(mine, -1)) & ~mine
+            if mine.any() and self._inlet[mine].all() and wet[ends].all():
+                found.append(contact)
+        return found
+
     def _between(self, now: np.ndarray, change: np.ndarray) -> np.ndarray:
         """The change of chi, where the front swings one that ends between the last two values.
 

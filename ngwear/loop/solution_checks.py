@@ -189,13 +189,24 @@ def _crushed(stage: Stage) -> Iterator[Finding]:
 
 
 def _covered_inlets(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
-    """A fluid that comes in nowhere."""
+    """A fluid that comes in nowhere, or on both sides of a contact that slides."""
+    sliding = {spec.name for spec in stage.scene.contacts if spec.slides}
     for name, fluid in stage.fluids.items():
         pressure = fluid.pressure.Get()
         if pressure > 0 and not fluid.shares.any():
             sentence = f"surfaces touch the whole inlet of '{name}', so that its {pressure:.3g} MPa act nowhere; name "
             sentence = f"stroke '{stroke.name}': {sentence}edges on the sealed side in fluid.inlet"
             yield Finding(f"inlet {stroke.name} {name}", pressure, sentence)
+        for contact in fluid.on_both_sides() if pressure > 0 else ():
+            if contact.name not in sliding:
+                continue
+            sentence = (
+                f"stroke '{stroke.name}': contact '{contact.name}' lies on the inlet of '{name}' and seals nothing"
+            )
+            sentence += (
+                f": the {pressure:.3g} MPa act on both sides of it; name edges on the sealed side in fluid.inlet"
+            )
+            yield Finding(f"inlet {stroke.name} {name} {contact.name}", pressure, sentence)
 
 
 def _lower_friction(stage: Stage, stroke: Stroke) -> Iterator[Finding]:

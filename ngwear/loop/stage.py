@@ -207,10 +207,14 @@ class Stage:
         places = np.array([fluid.passed for fluid in self.fluids.values()])
         return places if np.isfinite(places).any() else None
 
-    def let_fluid_pass(self, places: Array | None) -> None:
-        """Set the places up to which the fluids have lifted contacts, before a solve."""
-        for k, fluid in enumerate(self.fluids.values()):
-            fluid.passed = np.full((2, 2), np.nan) if places is None else places.reshape(-1, 2, 2)[k]
+    def let_fluid_pass(self, places: Array | None, *, after: Stroke | None = None) -> None:
+        """Set the places up to which the fluids have lifted contacts, before a solve.
+
+        In a stroke ``after`` one without pressure the contacts have closed again: none is lifted yet.
+        """
+        for k, (name, fluid) in enumerate(self.fluids.items()):
+            closed = after is not None and after.pressure_at(name) == 0.0
+            fluid.passed = np.full((2, 2), np.nan) if places is None or closed else places.reshape(-1, 2, 2)[k]
 
     def fluid_left(self) -> Array | None:
         """What the fluids leave on the outline in the present state, for ``leave_fluid``; None if pockets hold none."""

@@ -67,7 +67,7 @@ def solve_stroke(
         state.memory.prepare(stage.memory, plan, index)
     before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
     work, path, fewest = Work(), phase.path, phase.fewest
-    stage.let_fluid_pass(phase.passed)
+    stage.let_fluid_pass(phase.passed, after=stage.scene.program.cycle[index - 1])
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
     if (phase.path and phase.shares is None) or empties(state, index):
         guesses = []  # on a new mesh a way that needed steps needs them again

@@ -1,6 +1,7 @@
 """A U-cup between two shoulders: the fluid lifts it off the sealed one, and reaches the whole annulus behind it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -65,6 +66,27 @@ def test_the_next_cycle_starts_behind_the_contacts_that_it_has_passed(cup):
     state = stepper.advance(state)
     assert axial(state.reports[-1]) == pytest.approx(axial(cup[1].reports[-1]), rel=1e-4)
     np.testing.assert_array_equal(np.isfinite(state.phases[2].passed), np.isfinite(places[2]))
+
+
+def test_after_a_stroke_without_pressure_it_has_passed_nothing(cup):
+    """Wherever it was in the same stroke of the last cycle: the contacts have closed since."""
+    stepper, state = cup
+    kept = state.saved()
+    before = axial(state.reports[1])
+    state.phases[1].passed = state.phases[2].passed
+    state = stepper.advance(state)
+    assert axial(state.reports[1]) == pytest.approx(before, rel=1e-3)
+    state.restore(kept)
+
+
+def test_an_inlet_on_both_sides_of_a_contact_that_slides_is_told_of(cup):
+    stepper, state = cup
+    assert not [found for report in state.reports for found in report.findings if found.key.startswith("inlet")]
+    below = ["air bottom", "lip back", "lip tip", "lip front", "lip end"]
+    fluid = nw.Fluid(edges=NAMES, inlet=[*INLET, *below])
+    state = nw.Stepper(replace(stepper.scene, fluid=fluid)).start()
+    told = [found.sentence for found in state.reports[-1].findings if found.key.startswith("inlet")]
+    assert "contact 'rod' lies on the inlet of 'fluid' and seals nothing" in told[0]
 
 
 def test_a_stage_takes_the_places_to_its_own_mesh(cup):
