@@ -17,6 +17,7 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.spatial import cKDTree
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.loop.finer_mesh import refine_everywhere, remeshes
@@ -73,10 +74,13 @@ def _on_halved(state: State) -> State:
 
 
 def _read(state: State) -> Read:
-    """Values of each stroke, and load per length times travel over the cycle, to which wear is proportional."""
-    scene = state.stage.scene
+    """Values of each stroke, and load per length times travel over the cycle, to which wear is proportional.
+
+    Of each stroke its last report counts; where a new mesh lies between two, loads are those of the nearest nodes.
+    """
+    scene, reports = state.stage.scene, list({report.phase: report for report in state.reports}.values())
     out: Read = {}
-    for report in state.reports:
+    for report in reports:
         stroke = scene.program.cycle[report.phase].name
         for name, profile in report.contacts.items():
             zones = profile.zones()
@@ -85,7 +89,11 @@ def _read(state: State) -> Read:
         for name in (name for name in report.forces if name.endswith("friction")):
             out.setdefault(FRICTION, {})[f"{stroke}: {name}"] = report.forces[name]
     for name in (spec.name for spec in scene.contacts if spec.wears):
-        worn = sum((scene.program.cycle[r.phase].travel * r.contacts[name].load for r in state.reports), np.zeros(()))
-        out.setdefault(AREA, {})[name] = worn.sum()
-        out.setdefault(DEPTH, {})[name] = (worn / state.reports[0].contacts[name].weight).max()
+        ways, profiles = ([scene.program.cycle[r.phase].travel for r in reports], [r.contacts[name] for r in reports])
+        out.setdefault(AREA, {})[name] = sum(way * p.load.sum() for way, p in zip(ways, profiles, strict=True))
+        worn = np.zeros(len(profiles[-1].t))
+        for way, profile in zip(ways, profiles, strict=True):
+            _, nearest = cKDTree(profile.reference).query(profiles[-1].reference)
+            worn += way * (profile.load / profile.weight)[nearest]
+        out.setdefault(DEPTH, {})[name] = worn.max()
     return out

@@ -54,6 +54,17 @@ def test_errors_fade_as_the_wear_does(mounted):
     assert faded(mounted) == mounted.mesh_errors
 
 
+def test_of_strokes_on_two_meshes_all_loads_count_once(ring, mounted):
+    """The outline may need a new mesh between the strokes of a cycle; a kept state reports one stroke once more."""
+    finer = Stepper(replace(ring, accuracy=Accuracy(across=24.0))).start()
+    (first, _), (again, last), exact = mounted.reports, finer.reports, worn(finer)
+    assert len(first.contacts["rod"].t) != len(last.contacts["rod"].t)
+    finer.reports = [first, again, last]
+    assert worn(finer) == exact
+    finer.reports = [first, last]
+    assert worn(finer)[0] == pytest.approx(exact[0], rel=0.05)
+
+
 def test_a_part_that_is_held_has_none():
     state = Stepper(replace(nw.read_scene("geometries/rod_seal/scene.toml"), accuracy=Accuracy(across=1.0))).start()
     add_mesh_errors(state)
