@@ -192,21 +192,24 @@ class FluidPressure(EdgePressure):
             inside, touching = self._inlet[path], np.zeros(len(path), dtype=bool)
             beyond = touching.copy()
             for contact in self.contacts:
-                mine = np.zeros(len(self._inlet), dtype=bool)
-                mine[contact.positions[contact.touching()]] = True
-                mine = mine[path]
+                mine = self._touched(contact)[path]
                 touching |= mine
                 if (mine & ~inside).any():
                     beyond |= mine
             found.append(beyond if beyond.any() else touching)
         return found
 
+    def _touched(self, contact: OutlineContact) -> np.ndarray:
+        """Mask of the mesh edges that a contact's surface touches, in the order of the outline."""
+        touched = np.zeros(len(self._inlet), dtype=bool)
+        touched[contact.positions[contact.touching()]] = True
+        return touched
+
     def on_both_sides(self) -> list[OutlineContact]:
         """Contacts that touch the inlet's edges alone, and have the fluid on both sides of all their zones."""
         found, wet = [], self.shares >= 1.0
         for contact in self.contacts:
-            mine = np.zeros(len(wet), dtype=bool)
-            mine[contact.positions[contact.touching()]] = True
+            mine = self._touched(contact)
             ends = (np.roll(mine, 1) | np.roll(mine, -1)) & ~mine
             if mine.any() and self._inlet[mine].all() and wet[ends].all():
                 found.append(contact)

@@ -77,7 +77,7 @@ def findings(
         *_crossings(place),
         *_imbalance(stage, forces),
         *_crushed(stage),
-        *_covered_inlets(stage, stroke),
+        *_useless_inlets(stage, stroke),
         *_blow_by(stage, stroke),
         *_barely_held(stage, stroke),
         *_lower_friction(stage, stroke),
@@ -188,7 +188,7 @@ def _crushed(stage: Stage) -> Iterator[Finding]:
         )
 
 
-def _covered_inlets(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
+def _useless_inlets(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     """A fluid that comes in nowhere, or on both sides of a contact that slides."""
     sliding = {spec.name for spec in stage.scene.contacts if spec.slides}
     for name, fluid in stage.fluids.items():
@@ -198,15 +198,14 @@ def _covered_inlets(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
             sentence = f"stroke '{stroke.name}': {sentence}edges on the sealed side in fluid.inlet"
             yield Finding(f"inlet {stroke.name} {name}", pressure, sentence)
         for contact in fluid.on_both_sides() if pressure > 0 else ():
-            if contact.name not in sliding:
-                continue
-            sentence = (
-                f"stroke '{stroke.name}': contact '{contact.name}' lies on the inlet of '{name}' and seals nothing"
-            )
-            sentence += (
-                f": the {pressure:.3g} MPa act on both sides of it; name edges on the sealed side in fluid.inlet"
-            )
-            yield Finding(f"inlet {stroke.name} {name} {contact.name}", pressure, sentence)
+            if contact.name in sliding:
+                what = (
+                    f"stroke '{stroke.name}': contact '{contact.name}' lies on the inlet of '{name}' and seals nothing"
+                )
+                sentence = (
+                    f"{what}: the {pressure:.3g} MPa act on both sides; name edges on the sealed side in fluid.inlet"
+                )
+                yield Finding(f"inlet {stroke.name} {name} {contact.name}", pressure, sentence)
 
 
 def _lower_friction(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
