@@ -16,6 +16,7 @@ from ngwear.geometry.sizing import SizeField
 OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when an outline is healed
 # 73 degrees: beyond, a point runs more than three times as far as the depth; settled on the torn seal.
 STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which points follow the column
+SHAPE = 0.01  # of the worn depth: how far the outline may move where two of its points are merged
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment: normals then turn little in a part; costs next to nothing
 
 
@@ -188,29 +189,65 @@ def _renamed(before: Outline, after: Array, points: Array) -> Outline:
     return Outline(points, names, corners, before.provenance)
 
 
-def tidied(contour: Outline, field: SizeField) -> Outline:
-    """Merge segments shorter than 0.4 h into one point each, keeping the polygon's area exactly."""
+def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
+    """Merge segments shorter than 0.4 h that wear has shortened, keeping the polygon's area exactly.
+
+    Two points become one where the outline moves by less than ``SHAPE`` of the depth worn there; a rounding that was
+    drawn with short segments stays as it is.
+
+    Parameters
+    ----------
+    contour : Outline
+    field : SizeField
+        Wanted element edges h.
+    worn : array, shape (n,)
+        Worn depth at each point [mm].
+    """
+    kept: NDArray[np.bool_] = np.zeros(
+        len(contour), dtype=bool
+    )  # starts of segments whose merging would change the shape
     while True:
         h = np.minimum(field(contour.points), field(np.roll(contour.points, -1, axis=0)))
         fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(len(contour))])
         short = (contour.lengths < 0.4 * np.minimum(h, np.median(contour.lengths))) & ~fixed & ~np.roll(fixed, -1)
-        pick = _apart(np.flatnonzero(short), len(contour))
+        pick = _apart(np.flatnonzero(short & ~kept), len(contour))
         if len(pick) == 0:
             spare = _beside_fixed(contour, fixed, h)
             if not spare.any():
                 return contour
-            contour = contour.without(spare)
+            contour, worn, kept = contour.without(spare), worn[~spare], kept[~spare]
             continue
         points, n = contour.points.copy(), len(contour)
         drop: NDArray[np.bool_] = np.zeros(n, dtype=bool)
         for i in pick:
-            a, b, c, d = (points[(i + k) % n] for k in (-1, 0, 1, 2))
-            middle, chord = 0.5 * (b + c), d - a
-            outward = np.array([chord[1], -chord[0]]) / np.linalg.norm(chord)
-            lost = _area(np.array([a, b, c, d])) - _area(np.array([a, middle, d]))
-            points[i] = middle + outward * (2 * lost / np.linalg.norm(chord))
+            around = (i + np.arange(-1, 3)) % n
+            before = contour.points[around]
+            merged = _merged(before)
+            if _off(before, merged) > SHAPE * worn[around[1:3]].mean():
+                kept[i] = True
+                continue
+            points[i] = merged
             drop[(i + 1) % n] = True
-        contour = replace(contour, points=points).without(drop)
+        if drop.any():
+            contour = replace(contour, points=points).without(drop)
+        worn, kept = worn[~drop], kept[~drop]
+
+
+def _merged(points: Array) -> Array:
+    """The point that replaces the middle two of four so that the area beside them stays, shape (2,)."""
+    a, b, c, d = points
+    middle, chord = 0.5 * (b + c), d - a
+    outward = np.array([chord[1], -chord[0]]) / np.linalg.norm(chord)
+    lost = _area(points) - _area(np.array([a, middle, d]))
+    return np.asarray(middle + outward * (2 * lost / np.linalg.norm(chord)))
+
+
+def _off(points: Array, merged: Array) -> float:
+    """How far the middle two of four points lie off the line from the first over ``merged`` to the last [mm]."""
+    from shapely import LineString
+    from shapely import points as as_points
+
+    return float(LineString([points[0], merged, points[3]]).distance(as_points(points[1:3])).max())
 
 
 def _beside_fixed(contour: Outline, fixed: NDArray[np.bool_], h: Array) -> NDArray[np.bool_]:

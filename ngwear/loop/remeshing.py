@@ -77,7 +77,9 @@ def remesh(
         contour = unworn_outline(old.scene)
     fine = state.fine if fine is None else fine
     wanted = required_sizes(old, phases, across=state.across, fine=fine, **remaining_sliding(state))
-    tidy = tidied(contour, wanted) if state.ledger.worn > 0 else contour
+    tidy = contour
+    if state.depths is not None:
+        tidy = tidied(contour, wanted, _Interpolation(state.contour, contour)(state.depths[0]))
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
     if jump > LARGEST_JUMP:

@@ -2,10 +2,12 @@ import math
 
 import numpy as np
 import pytest
+from shapely import LinearRing
+from shapely import points as shapely_points
 
 from ngwear.errors import GeometryError
 from ngwear.geometry.outline import Outline
-from ngwear.geometry.recession import recede, refuse_worn_through, tidied
+from ngwear.geometry.recession import SHAPE, recede, refuse_worn_through, tidied
 from ngwear.geometry.sizing import SizeField
 
 
@@ -121,10 +123,22 @@ def test_tidied_merges_short_segments_and_keeps_the_area(circle):
     t = np.array([10.1, 10.2, 30.05])
     crowded = ring.inserted(t)
     field = SizeField(np.empty((0, 2)), np.empty(0), 0.2)
-    tidy = tidied(crowded, field)
+    tidy = tidied(crowded, field, np.full(len(crowded), 0.5))
     assert len(tidy) < len(crowded)
     assert tidy.area == pytest.approx(crowded.area, rel=1e-14)
     assert tidy.lengths.min() > 0.3 * np.median(tidy.lengths)
+
+
+def test_a_rounding_drawn_with_short_segments_is_merged_only_where_wear_exceeds_what_its_shape_loses(circle):
+    crowded = circle(60).inserted(np.arange(0, 16, 2) + 0.3)
+    field = SizeField(np.empty((0, 2)), np.empty(0), 0.2)
+    assert tidied(crowded, field, np.zeros(len(crowded))) is crowded
+    worn = np.where(crowded.points[:, 1] > 0.8, 1.0, 0.0)
+    tidy = tidied(crowded, field, worn)
+    apart = LinearRing(tidy.points).distance(shapely_points(crowded.points))
+    assert 60 < len(tidy) < len(crowded)
+    assert 0 < apart.max() < SHAPE * worn.max()
+    assert np.all(apart[crowded.points[:, 1] < 0.7] < 1e-12)
 
 
 def test_a_section_that_is_almost_gone_is_refused(rectangle):
