@@ -17,6 +17,7 @@ OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when
 # 73 degrees: beyond, a point runs more than three times as far as the depth; settled on the torn seal.
 STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which points follow the column
 SHAPE = 0.01  # of the worn depth: how far the outline may move where two of its points are merged
+RIDGE = 0.5  # rad: a worn point where the outline turns by more is a ridge that its elements do not resolve
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment: normals then turn little in a part; costs next to nothing
 
 
@@ -190,10 +191,10 @@ def _renamed(before: Outline, after: Array, points: Array) -> Outline:
 
 
 def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
-    """Merge segments shorter than 0.4 h that wear has shortened, keeping the polygon's area exactly.
+    """Merge worn segments shorter than 0.4 h into one point each, keeping the polygon's area exactly.
 
-    Two points become one where the outline moves by less than ``SHAPE`` of the depth worn there; a rounding that was
-    drawn with short segments stays as it is.
+    Two points become one where that moves the outline by less than ``SHAPE`` of the depth worn there, or takes off a
+    ridge that the wear has left; a rounding that was drawn with short segments stays as it is.
 
     Parameters
     ----------
@@ -217,13 +218,14 @@ def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
                 return contour
             contour, worn, kept = contour.without(spare), worn[~spare], kept[~spare]
             continue
-        points, n = contour.points.copy(), len(contour)
+        points, n, turning = contour.points.copy(), len(contour), np.abs(contour.turning)
         drop: NDArray[np.bool_] = np.zeros(n, dtype=bool)
         for i in pick:
             around = (i + np.arange(-1, 3)) % n
-            before = contour.points[around]
+            before, depth = contour.points[around], worn[around[1:3]]
             merged = _merged(before)
-            if _off(before, merged) > SHAPE * worn[around[1:3]].mean():
+            ridge = depth.min() > 0 and turning[around[1:3]].max() > RIDGE
+            if not ridge and _off(before, merged) > SHAPE * depth.mean():
                 kept[i] = True
                 continue
             points[i] = merged
