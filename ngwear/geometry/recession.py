@@ -16,7 +16,7 @@ from ngwear.geometry.sizing import SizeField
 OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when an outline is healed
 # 73 degrees: beyond, a point runs more than three times as far as the depth; settled on the torn seal.
 STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which points follow the column
-SHAPE = 0.01  # of the worn depth: how far the outline may move where two of its points are merged
+SHAPE = 0.05  # of the greatest worn depth: how far the outline may move where two of its points are merged
 RIDGE = 0.5  # rad: a worn point where the outline turns by more is a ridge that its elements do not resolve
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment: normals then turn little in a part; costs next to nothing
 
@@ -193,8 +193,8 @@ def _renamed(before: Outline, after: Array, points: Array) -> Outline:
 def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
     """Merge worn segments shorter than 0.4 h into one point each, keeping the polygon's area exactly.
 
-    Two points become one where that moves the outline by less than ``SHAPE`` of the depth worn there, or takes off a
-    ridge that the wear has left; a rounding that was drawn with short segments stays as it is.
+    Two points become one where that moves the outline by less than ``SHAPE`` of the greatest worn depth, or takes off a
+    ridge that the wear has left: roundings that were drawn with short segments keep their shape.
 
     Parameters
     ----------
@@ -204,6 +204,7 @@ def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
     worn : array, shape (n,)
         Worn depth at each point [mm].
     """
+    most = SHAPE * float(worn.max())
     kept: NDArray[np.bool_] = np.zeros(
         len(contour), dtype=bool
     )  # starts of segments whose merging would change the shape
@@ -225,7 +226,7 @@ def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
             before, depth = contour.points[around], worn[around[1:3]]
             merged = _merged(before)
             ridge = depth.min() > 0 and turning[around[1:3]].max() > RIDGE
-            if not ridge and _off(before, merged) > SHAPE * depth.mean():
+            if not ridge and _off(before, merged) > most:
                 kept[i] = True
                 continue
             points[i] = merged
