@@ -205,9 +205,7 @@ def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
         Worn depth at each point [mm].
     """
     most = SHAPE * float(worn.max())
-    kept: NDArray[np.bool_] = np.zeros(
-        len(contour), dtype=bool
-    )  # starts of segments whose merging would change the shape
+    kept: NDArray[np.bool_] = np.zeros(len(contour), dtype=bool)  # at the start of a segment that stays
     while True:
         h = np.minimum(field(contour.points), field(np.roll(contour.points, -1, axis=0)))
         fixed = contour.corners | np.array([contour.names[i] != contour.names[i - 1] for i in range(len(contour))])
