@@ -17,7 +17,6 @@ OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when
 # 73 degrees: beyond, a point runs more than three times as far as the depth; settled on the torn seal.
 STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which points follow the column
 SHAPE = 0.05  # of the greatest worn depth: how far the outline may move where two of its points are merged
-RIDGE = 0.5  # rad: a worn point where the outline turns by more is a ridge that its elements do not resolve
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment: normals then turn little in a part; costs next to nothing
 
 
@@ -190,21 +189,20 @@ def _renamed(before: Outline, after: Array, points: Array) -> Outline:
     return Outline(points, names, corners, before.provenance)
 
 
-def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
+def tidied(contour: Outline, field: SizeField, worn: float) -> Outline:
     """Merge worn segments shorter than 0.4 h into one point each, keeping the polygon's area exactly.
 
-    Two points become one where that moves the outline by less than ``SHAPE`` of the greatest worn depth, or takes off a
-    ridge that the wear has left: roundings that were drawn with short segments keep their shape.
+    Two points become one where that moves the outline by less than ``SHAPE`` of the greatest worn depth: roundings that
+    were drawn with short segments keep their shape.
 
     Parameters
     ----------
     contour : Outline
     field : SizeField
         Wanted element edges h.
-    worn : array, shape (n,)
-        Worn depth at each point [mm].
+    worn : float
+        Greatest worn depth [mm].
     """
-    most = SHAPE * float(worn.max())
     kept: NDArray[np.bool_] = np.zeros(len(contour), dtype=bool)  # at the start of a segment that stays
     while True:
         h = np.minimum(field(contour.points), field(np.roll(contour.points, -1, axis=0)))
@@ -215,23 +213,21 @@ def tidied(contour: Outline, field: SizeField, worn: Array) -> Outline:
             spare = _beside_fixed(contour, fixed, h)
             if not spare.any():
                 return contour
-            contour, worn, kept = contour.without(spare), worn[~spare], kept[~spare]
+            contour, kept = contour.without(spare), kept[~spare]
             continue
-        points, n, turning = contour.points.copy(), len(contour), np.abs(contour.turning)
+        points, n = contour.points.copy(), len(contour)
         drop: NDArray[np.bool_] = np.zeros(n, dtype=bool)
         for i in pick:
-            around = (i + np.arange(-1, 3)) % n
-            before, depth = contour.points[around], worn[around[1:3]]
+            before = contour.points[(i + np.arange(-1, 3)) % n]
             merged = _merged(before)
-            ridge = depth.min() > 0 and turning[around[1:3]].max() > RIDGE
-            if not ridge and _off(before, merged) > most:
+            if _off(before, merged) > SHAPE * worn:
                 kept[i] = True
                 continue
             points[i] = merged
             drop[(i + 1) % n] = True
         if drop.any():
             contour = replace(contour, points=points).without(drop)
-        worn, kept = worn[~drop], kept[~drop]
+        kept = kept[~drop]
 
 
 def _merged(points: Array) -> Array:

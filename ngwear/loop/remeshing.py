@@ -77,9 +77,7 @@ def remesh(
         contour = unworn_outline(old.scene)
     fine = state.fine if fine is None else fine
     wanted = required_sizes(old, phases, across=state.across, fine=fine, **remaining_sliding(state))
-    tidy = contour
-    if state.depths is not None:
-        tidy = tidied(contour, wanted, _Interpolation(state.contour, contour)(state.depths[0]))
+    tidy = contour if state.depths is None else tidied(contour, wanted, float(state.depths[0].max()))
     body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
     jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
     if jump > LARGEST_JUMP:
