@@ -12,6 +12,8 @@ from ngwear.effects.contact import OutlineContact
 from ngwear.effects.rigid_motion import RigidMotion
 from ngwear.effects.unilateral import UnilateralContact
 from ngwear.equilibrium.problem import Problem
+from ngwear.fields.deformed_outline import crossing, outline_places, stretches
+from ngwear.geometry.meshed_section import MeshedSection
 
 if TYPE_CHECKING:  # imported only if there is friction
     from ngwear.effects.friction import Friction
@@ -22,11 +24,13 @@ FREE = 1e-9  # stiffness of a rigid motion over what its nodes would feel one by
 # and wrinkles (Biot, Appl. Sci. Res. A 12 (1963) 168).
 CREASING, WRINKLING = 0.65, 0.544
 REMEDIES = "lower the friction or the load, use smaller steps, or a stiffer rubber"
+UNFOLD = "lower the load, take a stiffer rubber, or round the section there"
 ROLLS_OVER = (
     "friction rolls the part over, and no state is left in which it only slides: lower the friction where the part "
     "slides, or give it less room along the axis"
 )
 ROLLS = 45.0  # degrees: a ring resists turning with a moment that grows less and less, up to a quarter of a turn
+CRUSHED = 0.5  # J of an element; rubber bears far less compression
 COLLAPSED = 0.1  # J of an element: no shorter load step leads on from there; rubber bears no such compression
 NEAR = 1.03  # times the creasing stretch: the last equilibrium counts as near it up to here
 
@@ -35,6 +39,42 @@ def diagnosis(problem: Problem) -> str:
     """Sentences for the message of a failed load step; empty if no cause is found."""
     found = [_unheld(problem), _unstable_surface(problem)]
     return "".join(f"\n{sentence}" for sentence in found if sentence)
+
+
+def folds(problem: Problem) -> str:
+    """Sentence for the same message: where the outline of a section crosses itself, is creased or crushed; or empty.
+
+    Other than what ``diagnosis`` finds it may be due to elements that are too coarse.
+    """
+    if not isinstance(problem.body, MeshedSection):
+        return ""
+    before, after = outline_places(problem.body, problem.fields[DISPLACEMENT])
+    at = crossing(after)
+    if at is not None:
+        return f"\n{crosses(at)}: {UNFOLD}"
+    stretch = stretches(before, after)
+    if stretch.min() <= NEAR * CREASING:
+        half, edge = np.unravel_index(np.argmin(stretch), stretch.shape)
+        x, y = after[half, edge]
+        name, least = problem.body.outline.names[edge], stretch[half, edge]
+        return (
+            f"\nthe load folds the surface: edge '{name}' is compressed to {least:.2g} of its length at "
+            f"({x:.4g}, {y:.4g}); it creases from {CREASING}: {UNFOLD}"
+        )
+    jacobians = problem.jacobians()
+    if jacobians.min() < CRUSHED:
+        x, y = problem.points.centres[jacobians.argmin()]
+        return (
+            f"\nan element at ({x:.4g}, {y:.4g}) of the undeformed section is squeezed to {jacobians.min():.2g} of its "
+            "volume: the mesh does not resolve the section there; take smaller elements"
+        )
+    return ""
+
+
+def crosses(at: tuple[float, float]) -> str:
+    """Says that an outline crosses itself at a place."""
+    x, y = at
+    return f"the outline crosses itself at ({x:.4g}, {y:.4g}): the part touches itself there, which is not computed"
 
 
 def _unheld(problem: Problem) -> str:

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
 from ngwear.equilibrium.attempts import solve
-from ngwear.equilibrium.diagnosis import ROLLS_OVER, creases, diagnosis, has_collapsed, has_room, rolls
+from ngwear.equilibrium.diagnosis import ROLLS_OVER, creases, diagnosis, folds, has_collapsed, has_room, rolls
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report
 from ngwear.equilibrium.problem import IMBALANCE, Loads, Problem
 from ngwear.errors import ConvergenceError
@@ -31,6 +31,8 @@ class StepOptions:
         Fraction up to which the next step grows.
     easy : int
         Iterations up to which the next step grows.
+    leaps : bool
+        Whether a part with room to move may move over to another equilibrium.
     max_updates : int
         Solves allowed for what terms fix within a solve (the fluid front) to settle.
     """
@@ -39,6 +41,7 @@ class StepOptions:
     smallest: float = 1 / 512  # nine halvings; a way that needs more ends in a report
     largest: float = 1.0
     easy: int = 8  # a third of the most iterations
+    leaps: bool = True
     max_updates: int = 12  # a front that still moves is left then, within an edge of its place
     newton: NewtonOptions = field(default_factory=NewtonOptions)
 
@@ -132,7 +135,7 @@ def advance(
         # With an imbalance load the fluid front stays: moving it would change that load.
         update = IMBALANCE not in target or goal == 1.0
         here = options if goal == 1.0 else on_the_way
-        moves = leaps or step < 2 * options.smallest
+        moves = options.leaps and (leaps or step < 2 * options.smallest)
         here = replace(here, newton=replace(here.newton, moves=moves))
         gradually = step <= SHORT  # a longer one is halved first
         report = settle(problem, here, work, update=update, gradually=gradually)
@@ -145,7 +148,8 @@ def advance(
             leapt = leaps
             stands |= leapt
             # Where the part moves over to another equilibrium, the loads on the way there say little: all at once.
-            leaps = not stands and step <= SHORT and goal < 1.0 and IMBALANCE not in target and has_room(problem)
+            leaps = options.leaps and not stands and step <= SHORT and goal < 1.0
+            leaps = leaps and IMBALANCE not in target and has_room(problem)
             if leaps:
                 continue
             step /= 2
@@ -160,7 +164,7 @@ def advance(
                 elif creases(problem):
                     report = replace(report, outcome=Outcome.CREASED)
                 cause = f"\n{ROLLS_OVER}" if report.outcome is Outcome.ROLLED else diagnosis(problem)
-                raise ConvergenceError(way + cause, report, cause=cause)
+                raise ConvergenceError(way + (cause or folds(problem)), report, cause=cause)
             continue
         if update or math.isfinite(duration):
             problem.commit()

@@ -10,13 +10,13 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ngwear.equilibrium.diagnosis import WRINKLING, creases
+from ngwear.equilibrium.diagnosis import CRUSHED, WRINKLING, creases
 from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.equilibrium.problem import Loads, Problem
 from ngwear.equilibrium.stepping import StepOptions, Work, advance
 from ngwear.errors import ConvergenceError, MeshError
 from ngwear.loop.finer_mesh import advance_on_finer
-from ngwear.loop.solution_checks import CREASES, CRUSHED, CRUSHES, NO_STATE, ROLLS
+from ngwear.loop.solution_checks import CREASES, CRUSHES, NO_STATE, ROLLS
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 

@@ -14,6 +14,7 @@ from ngwear.loop.bearable_friction import advance_while_sliding
 from ngwear.loop.finer_mesh import advance_on_finer
 from ngwear.loop.mounting import mount
 from ngwear.loop.state import Phase, State
+from ngwear.loop.stroke_report import Forces
 from ngwear.loop.stroke_solve import recorder, steps_for
 
 Array = NDArray[np.float64]
@@ -22,8 +23,12 @@ Array = NDArray[np.float64]
 MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
 
 
-def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> None:
-    """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before."""
+def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:
+    """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before.
+
+    Returns the forces on the part in each stroke.
+    """
+    forces: list[Forces] = []
     cycle, begin = state.stage.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
     state.phases = []
     state.stage.leave_fluid(np.empty((0, 3)))
@@ -47,4 +52,6 @@ def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: 
         path = path if needed else []
         vector = stage.problem.state.vec.FV().NumPy().copy()
         state.phases.append(Phase(vector, path=path, passed=stage.fluid_passed(), left=stage.fluid_left()))
+        forces.append(stage.forces())
         on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
+    return forces

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.contact_profile import ContactProfile
-from ngwear.fields.element_nodes import ElementNodes
+from ngwear.equilibrium.diagnosis import CRUSHED, crosses
+from ngwear.fields.deformed_outline import crossing, outline_places
 from ngwear.loop.stage import Stage
 from ngwear.scene.program import Stroke
 
@@ -40,7 +40,6 @@ CONSEQUENCES = {
     "friction or the load",
     NO_STATE: "Lower the friction or the load, or take a stiffer rubber",
 }
-CRUSHED = 0.5  # J of an element; rubber bears far less compression
 
 
 @dataclass(frozen=True)
@@ -71,7 +70,7 @@ def findings(
 
     ``worn``: whether the part has worn, or wears in this solve.
     """
-    before, place = _outline(stage)
+    before, place = outline_places(stage.body, stage.problem.fields[DISPLACEMENT])
     found = [
         *_overlaps(stage, before, place, worn=worn),
         *_crossings(place),
@@ -111,23 +110,10 @@ def _overlaps(stage: Stage, before: Array, place: Array, *, worn: bool) -> Itera
 
 def _crossings(place: Array) -> Iterator[Finding]:
     """A deformed outline that crosses itself: the part has no contact with itself."""
-    from shapely import Polygon, is_valid, is_valid_reason
-
-    outline = Polygon(place.transpose(1, 0, 2).reshape(-1, 2))
-    if not is_valid(outline):
-        where = ", ".join(f"{float(x):.4g}" for x in is_valid_reason(outline).partition("[")[2].rstrip("]").split())
-        sentence = (
-            f"the outline crosses itself at ({where}): the part touches itself there, which the run does not compute"
-        )
-        yield Finding("crossing", 1.0, f"{sentence}; the results are those of a part that goes through itself")
-
-
-def _outline(stage: Stage) -> tuple[Array, Array]:
-    """Places of the start and the middle of each mesh edge before and after the deformation, shape (2, m, 2) [mm]."""
-    line, nodes, u = stage.body.outline, ElementNodes(stage.body.mesh), stage.problem.fields[DISPLACEMENT]
-    values = nodes.values(ng.CF((ng.x, ng.y, u[0], u[1])))
-    values = np.stack([values[line.vertices[:, 0]], values[nodes.middle(line.vertices)]])
-    return values[..., :2], values[..., :2] + values[..., 2:]
+    at = crossing(place)
+    if at is not None:
+        sentence = f"{crosses(at)}; the results are those of a part that goes through itself"
+        yield Finding("crossing", 1.0, sentence)
 
 
 def _gap(contact: OutlineContact, place: Array) -> Array:
@@ -213,7 +199,7 @@ def _lower_friction(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     share, why = stage.friction_shares.get(stroke.name, (1.0, ""))
     if share < 1:
         sentence = f"stroke '{stroke.name}': friction {why}; the results are for {100 * share:.0f} % of the friction, "
-        sentence += f"with which it still slides. {CONSEQUENCES[why]}"
+        sentence += f"with which it still slides, and so are their stated errors. {CONSEQUENCES[why]}"
         yield Finding(f"less friction {stroke.name}", 1 - share, sentence)
 
 

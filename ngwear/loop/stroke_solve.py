@@ -50,21 +50,7 @@ def solve_stroke(
     stage, phase = state.stage, state.phases[index]
     problem = stage.problem
     vector = problem.state.vec.FV().NumPy()
-    stage.begin(state.phases[index - 1].vector)
-    stage.leave_fluid(state.phases[index - 1].left)
-    problem.set_loads(stage.stroke_loads(stroke))
-    for friction in stage.frictions.values():
-        friction.coefficient.set_state(sliding.middle, stroke.speed)
-    if stage.has_stick_slip:
-        from ngwear.loop.slip_over_cycles import slip_per_cycle
-
-        stage.set_shares(slip_per_cycle(state.stage.scene.program.cycle, state.phases, index, sliding.repeats))
-    if state.counters:
-        from ngwear.loop import counter_surface
-
-        counter_surface.place(stage, state.counters, index, sliding)
-    if state.memory is not None and stage.memory is not None:
-        state.memory.prepare(stage.memory, plan, index)
+    _begin(state, index, stroke, sliding, plan)
     before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
     work, path, fewest = Work(), phase.path, phase.fewest
     stage.let_fluid_pass(phase.passed, after=stage.scene.program.cycle[index - 1])
@@ -92,6 +78,54 @@ def solve_stroke(
         passed=stage.fluid_passed(),
         left=stage.fluid_left(),
     )
+    return work.iterations
+
+
+def _begin(state: State, index: int, stroke: Stroke, sliding: Strokes, plan: Plan) -> None:
+    """Begin a stroke at the end of the one before, with the laws and the memory of the strokes it stands for."""
+    stage, before = state.stage, state.phases[index - 1]
+    stage.begin(before.vector)
+    stage.leave_fluid(before.left)
+    stage.problem.set_loads(stage.stroke_loads(stroke))
+    for friction in stage.frictions.values():
+        friction.coefficient.set_state(sliding.middle, stroke.speed)
+    if stage.has_stick_slip:
+        from ngwear.loop.slip_over_cycles import slip_per_cycle
+
+        stage.set_shares(slip_per_cycle(stage.scene.program.cycle, state.phases, index, sliding.repeats))
+    if state.counters:
+        from ngwear.loop import counter_surface
+
+        counter_surface.place(stage, state.counters, index, sliding)
+    if state.memory is not None and stage.memory is not None:
+        state.memory.prepare(stage.memory, plan, index)
+
+
+def pass_stroke(state: State, index: int, stroke: Stroke, sliding: Strokes, *, steps: int) -> int:
+    """Solve a stroke without wear in load steps from the end of the one before; return the Newton iterations.
+
+    Unlike ``solve_stroke``, which begins at its last equilibrium, and where friction sticks finds that again. The phase
+    then has the way, and a next solve goes that way again, at its load steps.
+
+    Raises
+    ------
+    ConvergenceError
+        If a load step fails.
+    """
+    stage, problem, phase, work = state.stage, state.stage.problem, state.phases[index], Work()
+    _begin(state, index, stroke, sliding, ())
+    options = StepOptions(first=1 / steps, largest=1 / steps, smallest=HARDEST, leaps=False)
+    if phase.path:
+        phase.fewest = True
+        path, _ = _follow(state, index, stroke, work, options)
+    else:
+        path = []
+        _begin_path(state, index)
+        work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
+    state.work.add(work)
+    vector, passed, left = problem.state.vec.FV().NumPy().copy(), stage.fluid_passed(), stage.fluid_left()
+    shares = stage.shares(stroke)
+    state.phases[index] = replace(phase, vector=vector, shares=shares, path=path, passed=passed, left=left)
     return work.iterations
 
 
