@@ -6,7 +6,7 @@ import pytest
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
-from ngwear.equilibrium.diagnosis import diagnosis
+from ngwear.equilibrium.diagnosis import diagnosis, folds
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import advance
 from ngwear.errors import ConvergenceError
@@ -92,3 +92,27 @@ def test_friction_beyond_steady_sliding_is_said_with_its_margin(rectangle):
     assert "friction of 1.5 under p/G = 2 at contact 'lid' is more than steady sliding bears" in diagnosis(problem)
     problem.set_loads({"lid slip": 0.0})
     assert "bears" not in diagnosis(problem)
+
+
+@pytest.mark.parametrize(
+    ("moved", "told"),
+    [
+        ((0.0, 0.0), ""),
+        ((-2.4 * (ng.x - 1.0) * ng.y, 0.0), "the outline crosses itself at (1, 0.4167): the part touches itself there"),
+        ((-0.4 * ng.x, 0.6 * ng.y), "is compressed to 0.6 of its length at ("),
+        ((0.0, -0.2 * ng.y - 0.6 * ng.y * ng.x * (2.0 - ng.x)), " of the undeformed section is squeezed to 0.2"),
+    ],
+)
+def test_a_load_that_folds_the_section_is_said_with_the_place(rectangle, moved, told):
+    problem = pressed(rectangle, [FixedEdges(("bottom",))])
+    problem.fields["displacement"].Set(ng.CF(moved))
+    assert told in folds(problem)
+    assert bool(folds(problem)) == bool(told)
+
+
+def test_a_walk_that_fails_without_friction_says_where_it_folds(rectangle):
+    problem = pressed(rectangle, [FixedEdges(("bottom",))])
+    with pytest.raises(ConvergenceError, match="no equilibrium between") as failed:
+        advance(problem, {"lid force [N]": 200.0})
+    assert "is compressed to" in str(failed.value) or "is squeezed to" in str(failed.value)
+    assert failed.value.cause == ""

@@ -1,0 +1,64 @@
+"""A part that sticks and has room to move wears from the cycle that repeats itself."""
+
+from dataclasses import replace
+
+import pytest
+
+from ngwear.errors import ConvergenceError
+from ngwear.loop import stepper
+from ngwear.loop.stepper import CYCLE_STEPS, REPEATS, Stepper
+from ngwear.loop.stroke_report import largest_change
+from ngwear.loop.stroke_solve import pass_stroke
+
+
+@pytest.fixture(scope="module")
+def sticking(ring):
+    """The O-ring with friction at which it sticks to the groove, for twenty cycles."""
+    contacts = [replace(spec, friction=0.15 if spec.slides else 0.4) for spec in ring.contacts]
+    return replace(ring, contacts=contacts, program=replace(ring.program, strokes=40))
+
+
+def cycles_change(scene):
+    """Change of the forces over three further cycles after the start [-], and the start's state."""
+    walker = Stepper(scene)
+    state = walker.start()
+    before = [report.forces for report in state.reports]
+    for _ in range(3):
+        after = []
+        for i, stroke in enumerate(scene.program.cycle):
+            pass_stroke(state, i, stroke, walker._strokes(i, 0), steps=CYCLE_STEPS)
+            after.append(state.stage.forces())
+    return largest_change(before, after), state
+
+
+def test_the_first_worn_cycle_repeats_itself(sticking, monkeypatch):
+    change, _ = cycles_change(sticking)
+    assert change <= 2 * REPEATS
+    monkeypatch.setattr(stepper, "MOST_CYCLES", 0)
+    first, _ = cycles_change(sticking)
+    assert first > 2 * REPEATS
+
+
+def test_a_program_of_one_cycle_is_not_repeated(sticking, monkeypatch):
+    once = replace(sticking, program=replace(sticking.program, strokes=2))
+    passes = []
+    monkeypatch.setattr(stepper, "pass_stroke", lambda *args, **kwargs: passes.append(args))
+    Stepper(once).start()
+    assert not passes
+
+
+def test_a_cycle_that_fails_leaves_the_one_before(sticking, monkeypatch):
+    def fails(*args, **kwargs):
+        raise ConvergenceError("stopped")
+
+    monkeypatch.setattr(stepper, "pass_stroke", fails)
+    state = Stepper(sticking).start()
+    assert len(state.reports) == len(sticking.program.cycle)
+    assert state.strokes == 0
+
+
+def test_the_change_is_that_of_the_forces_over_the_largest():
+    before = [{"rod": [1.0, -4.0]}, {"rod": [0.0, 2.0]}]
+    after = [{"rod": [1.2, -4.0]}, {"rod": [0.0, 2.0]}]
+    assert largest_change(before, after) == pytest.approx(0.05)
+    assert largest_change([{"rod": [0.0, 0.0]}], [{"rod": [0.0, 0.0]}]) == 0.0
