@@ -164,6 +164,7 @@ def lower_friction(
         if must_not is not None:
             raise error
         over = _never  # the squeeze alone wrinkles it
+    begun = goal
     while not over(problem):
         held = goal
         if held == 1.0:
@@ -174,22 +175,23 @@ def lower_friction(
         except ConvergenceError as nearer:  # the state is the last one with which it slides
             log.info("%s", nearer)
             break
-    held *= BELOW
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
-    if held * before < NEAREST:
-        raise error
-    less = {name: held * slip for name, slip in slips.items()}
-    try:
-        work.add(advance(problem, less, StepOptions(first=0.5, smallest=SMALLEST)))
-    except ConvergenceError:  # a surface that has creased does not come back by itself
+    # A surface that has creased does not come back by itself: then from the beginning, at last by a way that was gone.
+    ways = ((BELOW * held, False), (BELOW * held, True), (BELOW**2 * held, True), (begun, True))
+    for share, from_start in ways:
+        if share * before < NEAREST:
+            raise error
+        held, less = share, {name: share * slip for name, slip in slips.items()}
         try:
-            work.add(_with_less_friction(stage, target, less, start))
-        except ConvergenceError:
-            held *= BELOW
-            if held * before < NEAREST:
-                raise
-            less = {name: held * slip for name, slip in slips.items()}
-            work.add(_with_less_friction(stage, target, less, start))
+            if from_start:
+                work.add(_with_less_friction(stage, target, less, start))
+            else:
+                work.add(advance(problem, less, StepOptions(first=0.5, smallest=SMALLEST)))
+            break
+        except ConvergenceError as failed:
+            log.info("%s", failed)
+    else:
+        raise error
     stage.friction_shares[stroke] = (held * before, why)
     log.info("stroke '%s': friction %s; %.0f %% of it act", stroke, why, 100 * held * before)
     return work

@@ -103,12 +103,35 @@ def test_a_share_whose_loads_do_not_come_on_is_lowered_once_more(monkeypatch, be
     target, rolls = stage.stroke_loads(scene.program.cycle[0]), ConvergenceError("rolls", Report(Outcome.ROLLED))
     stage.problem.set_loads({"rod slip": 0.5 * target["rod slip"]})
     if share is None:
-        with pytest.raises(ConvergenceError, match="do not come on"):
+        with pytest.raises(ConvergenceError, match="rolls"):
             lower_friction(stage, "outward", target, rolls, Start.of(stage))
         return
     lower_friction(stage, "outward", target, rolls, Start.of(stage))
     assert reached == pytest.approx([0.25, share])
     assert stage.friction_shares["outward"] == (pytest.approx(share), bearable_friction.ROLLS)
+
+
+def test_at_last_it_goes_a_way_that_was_gone(monkeypatch):
+    """With a quarter of the friction the loads come on, with nothing else."""
+    scene = coarse_for_mounting(with_mounting_lengths(rubbed()))
+    stage, tried = Stage(scene, unworn_body(scene, 6.0)), []
+
+    def comes_on(stage, target, slips, start):
+        tried.append(abs(slips["rod slip"]))
+        if tried[-1] != 0.25:
+            raise ConvergenceError("the loads do not come on")
+        return Work()
+
+    def refuses(problem, slips, options):
+        raise ConvergenceError("no other friction")
+
+    monkeypatch.setattr(bearable_friction, "_with_less_friction", comes_on)
+    monkeypatch.setattr(bearable_friction, "advance", refuses)
+    target, rolls = stage.stroke_loads(scene.program.cycle[0]), ConvergenceError("rolls", Report(Outcome.ROLLED))
+    stage.problem.set_loads({"rod slip": 0.5 * target["rod slip"]})
+    lower_friction(stage, "outward", target, rolls, Start.of(stage))
+    assert tried == pytest.approx([0.25, BELOW * 0.25, BELOW**2 * 0.25, 0.25])
+    assert stage.friction_shares["outward"] == (0.25, bearable_friction.ROLLS)
 
 
 def test_a_step_that_is_rejected_leaves_the_shares_as_they_were(stage):
