@@ -15,13 +15,7 @@ from numpy.typing import NDArray
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
 from ngwear.loop.carried_state import settle_carried
 from ngwear.loop.element_sizes import coarse_for_mounting, with_contact_lengths, with_mounting_lengths, with_patch
-from ngwear.loop.finer_mesh import (
-    keep_as_it_is,
-    may_be_finer,
-    refine_at,
-    refine_everywhere,
-    unresolved,
-)
+from ngwear.loop.finer_mesh import keep_as_it_is, may_be_finer, refine_at, refine_everywhere, unresolved
 from ngwear.loop.first_cycle import first_cycle
 from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import (
@@ -33,9 +27,10 @@ from ngwear.loop.mounting import (
 )
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
+from ngwear.loop.repeating_cycle import CYCLE_STEPS, repeat_cycle
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State, StrokeReport
-from ngwear.loop.stroke_report import Forces, largest_change, stroke_report
+from ngwear.loop.stroke_report import stroke_report
 from ngwear.loop.stroke_solve import pass_stroke, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.boundary import GO_ON
@@ -55,8 +50,6 @@ log = logging.getLogger(__name__)
 NARROWER = 0.8  # how much narrower than on the last mesh contacts may be found on the first ones
 AT_ONCE = 3.0  # times as short as on the last mesh are the patch's edges of the next, if the part has room to move
 FIRST = 10  # times as long as the first step is the longest one
-REPEATS, MOST_CYCLES = 0.02, 10  # of the largest force: change from a cycle to the next; and how many are solved
-CYCLE_STEPS = 4  # load steps of each stroke in these cycles
 LATE = 0.01  # of the program's cycles: how much later than it fails an element may be torn, at the end of a jump
 
 
@@ -120,9 +113,9 @@ class Stepper:
         refuse_idle_contacts(state)
         refuse_closed_inlets(state)
         if scene.deactivation is None:
-            self._repeat_cycle(state, forces)  # most of the way on few elements
+            repeat_cycle(state, self._pass, forces)  # most of the way on few elements
             self._refine(state)
-            self._repeat_cycle(state, [report.forces for report in state.reports])
+            repeat_cycle(state, self._pass, [report.forces for report in state.reports])
         else:
             self._settle_cycle(state)
         arms = scene.arms
@@ -216,33 +209,12 @@ class Stepper:
             return False
         return True
 
-    def _repeat_cycle(self, state: State, forces: list[Forces]) -> None:
-        """Solve the cycle without wear, each stroke in load steps from the one before, until it repeats itself.
-
-        A part with room to move that sticks to a surface creeps there from cycle to cycle, away from where mounting has
-        left it. A step of the wear stands for many cycles, so the wear begins where these repeat. If a cycle fails, the
-        state is that of the one before. ``forces`` are those of the last cycle.
-        """
-        program = self.scene.program
-        creeps = bool(state.stage.floats) and state.stage.has_stick_slip
-        for _ in range(min(MOST_CYCLES, program.strokes // len(program.cycle) - 1) if creeps else 0):
-            saved, reports = state.saved(), []
-            try:
-                for i, stroke in enumerate(program.cycle):
-                    sliding = self._strokes(i, 0)
-                    WearStep.begin(state, i, sliding)
-                    iterations = pass_stroke(state, i, stroke, sliding, steps=CYCLE_STEPS)
-                    reports.append(self._report(state, i, iterations, sliding))
-            except ConvergenceError as error:
-                log.info("%s: back to the cycle before", error)
-                state.restore(saved)
-                return
-            state.reports, before = reports, forces
-            forces = [report.forces for report in reports]
-            change = largest_change(before, forces)
-            log.info("forces differ by %.2g from those of the cycle before", change)
-            if change <= REPEATS:
-                break
+    def _pass(self, state: State, index: int) -> StrokeReport:
+        """Solve a stroke without wear, in load steps from the end of the one before."""
+        stroke, sliding = self.scene.program.cycle[index], self._strokes(index, 0)
+        WearStep.begin(state, index, sliding)
+        iterations = pass_stroke(state, index, stroke, sliding, steps=CYCLE_STEPS)
+        return self._report(state, index, iterations, sliding)
 
     def _settle_cycle(self, state: State, *, at_once: bool = False) -> None:
         """Solve each stroke of the cycle once on the present outline, without wear; without load steps if at once."""

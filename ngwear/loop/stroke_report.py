@@ -55,10 +55,3 @@ def stroke_report(
         trapped=None if stage.trapped is None else float(stage.trapped.pressures.max()),
         findings=findings(stage, profiles, forces, scene.program.cycle[index], worn=worn),
     )
-
-
-def largest_change(before: list[Forces], after: list[Forces]) -> float:
-    """Largest change of a force on the part from one cycle to another, over the largest force [-]."""
-    cycles = np.array([[list(forces.values()) for forces in cycle] for cycle in (before, after)])
-    largest = float(np.abs(cycles).max(initial=0.0))
-    return float(np.abs(cycles[1] - cycles[0]).max()) / largest if largest > 0 else 0.0

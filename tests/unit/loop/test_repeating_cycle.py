@@ -5,9 +5,9 @@ from dataclasses import replace
 import pytest
 
 from ngwear.errors import ConvergenceError
-from ngwear.loop import stepper
-from ngwear.loop.stepper import CYCLE_STEPS, REPEATS, Stepper
-from ngwear.loop.stroke_report import largest_change
+from ngwear.loop import repeating_cycle, stepper
+from ngwear.loop.repeating_cycle import CYCLE_STEPS, REPEATS, largest_change
+from ngwear.loop.stepper import Stepper
 from ngwear.loop.stroke_solve import pass_stroke
 
 
@@ -34,7 +34,7 @@ def cycles_change(scene):
 def test_the_first_worn_cycle_repeats_itself(sticking, monkeypatch):
     change, _ = cycles_change(sticking)
     assert change <= 2 * REPEATS
-    monkeypatch.setattr(stepper, "MOST_CYCLES", 0)
+    monkeypatch.setattr(repeating_cycle, "MOST_CYCLES", 0)
     first, _ = cycles_change(sticking)
     assert first > 2 * REPEATS
 

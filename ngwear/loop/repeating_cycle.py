@@ -1,0 +1,58 @@
+"""A part with room to move that sticks: its cycle is solved without wear until it repeats itself."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+
+import numpy as np
+
+from ngwear.errors import ConvergenceError
+from ngwear.loop.state import State, StrokeReport
+from ngwear.loop.stroke_report import Forces
+
+log = logging.getLogger(__name__)
+
+# Chosen: the list in tests/benchmarks/README.md says what was tried.
+REPEATS, MOST_CYCLES = 0.02, 10  # of the largest force: change from a cycle to the next; and how many are solved
+CYCLE_STEPS = 4  # load steps of each stroke in these cycles
+
+
+def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport], forces: list[Forces]) -> None:
+    """Solve the cycle without wear, each stroke in load steps from the one before, until it repeats itself.
+
+    A part with room to move that sticks to a surface creeps there from cycle to cycle, away from where mounting has
+    left it. A step of the wear stands for many cycles, so the wear begins where these repeat. If a cycle fails, the
+    state is that of the one before.
+
+    Parameters
+    ----------
+    state : State
+    pass_stroke : callable
+        Solves a stroke of the cycle without wear, by its index.
+    forces : list of dict
+        Forces on the part in each stroke of the last cycle.
+    """
+    program = state.stage.scene.program
+    creeps = bool(state.stage.floats) and state.stage.has_stick_slip
+    for _ in range(min(MOST_CYCLES, program.strokes // len(program.cycle) - 1) if creeps else 0):
+        saved = state.saved()
+        try:
+            reports = [pass_stroke(state, i) for i in range(len(program.cycle))]
+        except ConvergenceError as error:
+            log.info("%s: back to the cycle before", error)
+            state.restore(saved)
+            return
+        state.reports, before = reports, forces
+        forces = [report.forces for report in reports]
+        change = largest_change(before, forces)
+        log.info("forces differ by %.2g from those of the cycle before", change)
+        if change <= REPEATS:
+            return
+
+
+def largest_change(before: list[Forces], after: list[Forces]) -> float:
+    """Largest change of a force on the part from one cycle to another, over the largest force [-]."""
+    cycles = np.array([[list(forces.values()) for forces in cycle] for cycle in (before, after)])
+    largest = float(np.abs(cycles).max(initial=0.0))
+    return float(np.abs(cycles[1] - cycles[0]).max()) / largest if largest > 0 else 0.0
