@@ -42,7 +42,7 @@ from typing import Any
 
 import numpy as np
 
-from ngwear.error_estimates.stated_errors import at_least_by_halved, state_errors
+from ngwear.error_estimates.stated_errors import state_errors, with_parts
 from ngwear.errors import NgwearError
 from ngwear.loop.result import Result
 from ngwear.loop.run import LocalDrawing
@@ -144,7 +144,7 @@ def combined_errors(
         out[name] = error + folded + prescribed.get(name, 0.0) + embedded.get(f"{name[:-4]} {BY_TIME_STEP}", 0.0)
     if DEPTH in levels and scene.wear.step == "jump":
         out[DEPTH] = max(out[DEPTH], steps.get(DEPTH, 0.0))
-    out |= at_least_by_halved(out)
+    out |= with_parts(out)
     torn = embedded.get(TORN, 0.0)
     if LOST in levels:
         out[LOST] += torn
@@ -277,7 +277,7 @@ class _CoarserRuns:
         """Wait for the coarser runs, and write the error estimates into the summary."""
         other = self._wait_for(*self.runs[0])
         if "gave up" in other:
-            by_halved = at_least_by_halved(summary["error estimates"])
+            by_halved = with_parts(summary["error estimates"])
             says = "known from elements of half the edges alone" if by_halved else "not known"
             summary["warnings"].append(f"the coarser run gave up: {other['gave up']}; the error of the mesh is {says}")
             state_errors(summary, summary["error estimates"] | by_halved)

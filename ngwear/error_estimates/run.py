@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, overload
 
-from ngwear.error_estimates.stated_errors import at_least_by_halved, state_errors
+from ngwear.error_estimates.stated_errors import state_errors, with_parts
 from ngwear.errors import SceneError
 from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
@@ -133,7 +133,7 @@ def _run_alone(scene: Scene, out: Path | None, *, resume: bool, progress: bool, 
 
     def state(_: Recorder, summary: dict[str, Any]) -> None:
         errors = summary["error estimates"]
-        state_errors(summary, errors | at_least_by_halved(errors))
+        state_errors(summary, errors | with_parts(errors))
         if asks:
             summary["warnings"].append("run alone: the error that the scene asks for is not checked")
 

@@ -35,7 +35,7 @@ from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, COMPLETED, OutFolder
 from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
-from ngwear.results.quantities_of_interest import BY_TIME_STEP, DEPTH, PEAK
+from ngwear.results.quantities_of_interest import BY_FRICTION, BY_TIME_STEP, DEPTH, PEAK
 from ngwear.results.recorder import fingerprint
 from ngwear.scene.accuracy import MOST_ACROSS
 from ngwear.scene.scene import Scene
@@ -194,10 +194,11 @@ class _LevelSummary:
         for power, name in ((1, "companion"), (2, "coarsest companion")):
             if (across / COARSER**power, parts) not in run:
                 cpu += summary.get(f"CPU time of the {name} [s]", 0.0)
-        self.mine = {ACROSS: across, PARTS: parts, DEPTH: estimated[DEPTH] if known else None, CPU: round(cpu, 3)}
+        levels_mend = {name: _by_mesh_and_steps(estimated, name) for name in (DEPTH, PEAK)}
+        self.mine = {ACROSS: across, PARTS: parts, DEPTH: levels_mend[DEPTH] if known else None, CPU: round(cpu, 3)}
         self.mine[BY_TIME] = estimated.get(BY_TIME, 0.0)
         if PEAK in self.asked:
-            self.mine[PEAK] = estimated.get(PEAK)
+            self.mine[PEAK] = levels_mend[PEAK]
         columns = (ACROSS, PARTS, *self.asked, CPU)
         levels = [{name: entry[name] for name in columns} for entry in (*self.done, self.mine)]
         summary["error asked for [-]"], summary["levels"] = self.asked[DEPTH], levels
@@ -213,6 +214,12 @@ class _LevelSummary:
         if not known:
             says = f"has no error estimate; {self.asked[DEPTH]:.2g} of the {DEPTH[:-4]} was asked for"
             summary["warnings"].append(f"the finest level {says}")
+
+
+def _by_mesh_and_steps(estimated: Mapping[str, float], name: str) -> float | None:
+    """An estimated error without what friction left out has in it, which no finer level lowers."""
+    total = estimated.get(name)
+    return None if total is None else total - estimated.get(f"{name[:-4]} {BY_FRICTION}", 0.0)
 
 
 def _earlier_levels(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:

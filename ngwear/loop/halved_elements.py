@@ -16,19 +16,17 @@ from copy import copy
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
-from scipy.spatial import cKDTree
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
+from ngwear.loop.cycle_quantities import Quantities, read_cycle
 from ngwear.loop.finer_mesh import refine_everywhere, remeshes
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.time_step_error import next_cycle
-from ngwear.results.quantities_of_interest import AREA, BY_HALVED, DEPTH, FRICTION, PEAK, WIDTH
+from ngwear.results.quantities_of_interest import BY_HALVED, DEPTH
 from ngwear.results.richardson import relative_errors
 
 REMAINS = 2.0  # of first order: the error over what halves change, 1 / (1 - 1/2)
-Read = dict[str, dict[str, ArrayLike]]
 log = logging.getLogger(__name__)
 
 
@@ -42,7 +40,7 @@ def add_mesh_errors(state: State) -> None:
     if state.mesh_errors or state.memory is not None or not remeshes(state):
         return
     try:
-        mine, other = _read(next_cycle(state) if state.strokes else state), _read(_on_halved(state))
+        mine, other = read_cycle(next_cycle(state) if state.strokes else state), read_cycle(_on_halved(state))
     except (ConvergenceError, GeometryError, MeshError) as error:
         log.info("the error by the mesh is not known: %s", error)
         return
@@ -55,11 +53,11 @@ def add_mesh_errors(state: State) -> None:
 
 def faded(state: State) -> dict[str, float]:
     """``State.mesh_errors`` times what is left at the end of the largest wear per cycle when they were computed."""
-    left = min(1.0, _largest_wear(_read(state)) / state.first_wear) if state.first_wear > 0 else 1.0
+    left = min(1.0, _largest_wear(read_cycle(state)) / state.first_wear) if state.first_wear > 0 else 1.0
     return {name: left * error for name, error in state.mesh_errors.items()}
 
 
-def _largest_wear(read: Read) -> float:
+def _largest_wear(read: Quantities) -> float:
     return max((float(np.max(wear)) for wear in read.get(DEPTH, {}).values()), default=0.0)
 
 
@@ -71,29 +69,3 @@ def _on_halved(state: State) -> State:
     refine_everywhere(there)
     Stepper(state.stage.scene).settle_on_new_mesh(there, anew=False)
     return there
-
-
-def _read(state: State) -> Read:
-    """Values of each stroke, and load per length times travel over the cycle, to which wear is proportional.
-
-    Of each stroke its last report counts; where a new mesh lies between two, loads are those of the nearest nodes.
-    """
-    scene, reports = state.stage.scene, list({report.phase: report for report in state.reports}.values())
-    out: Read = {}
-    for report in reports:
-        stroke = scene.program.cycle[report.phase].name
-        for name, profile in report.contacts.items():
-            zones = profile.zones()
-            out.setdefault(PEAK, {})[f"{stroke}: {name}"] = max((zone.peak for zone in zones), default=0.0)
-            out.setdefault(WIDTH, {})[f"{stroke}: {name}"] = sum(zone.width for zone in zones)
-        for name in (name for name in report.forces if name.endswith("friction")):
-            out.setdefault(FRICTION, {})[f"{stroke}: {name}"] = report.forces[name]
-    for name in (spec.name for spec in scene.contacts if spec.wears):
-        ways, profiles = ([scene.program.cycle[r.phase].travel for r in reports], [r.contacts[name] for r in reports])
-        out.setdefault(AREA, {})[name] = sum(way * p.load.sum() for way, p in zip(ways, profiles, strict=True))
-        worn = np.zeros(len(profiles[-1].t))
-        for way, profile in zip(ways, profiles, strict=True):
-            _, nearest = cKDTree(profile.reference).query(profiles[-1].reference)
-            worn += way * (profile.load / profile.weight)[nearest]
-        out.setdefault(DEPTH, {})[name] = worn.max()
-    return out

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
 from ngwear.errors import ConvergenceError
+from ngwear.loop.solution_checks import Finding
 from ngwear.loop.state import State, StrokeReport
 from ngwear.loop.stroke_report import Forces
 
@@ -18,7 +20,7 @@ REPEATS, MOST_CYCLES = 0.02, 10  # of the largest force: change from a cycle to 
 CYCLE_STEPS = 4  # load steps of each stroke in these cycles
 
 
-def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport], forces: list[Forces]) -> None:
+def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport], forces: list[Forces]) -> float:
     """Solve the cycle without wear, each stroke in load steps from the one before, until it repeats itself.
 
     A part with room to move that sticks to a surface creeps there from cycle to cycle, away from where mounting has
@@ -32,9 +34,15 @@ def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport]
         Solves a stroke of the cycle without wear, by its index.
     forces : list of dict
         Forces on the part in each stroke of the last cycle.
+
+    Returns
+    -------
+    float
+        ``largest_change`` from the last cycle but one to the last [-]; 0 if only one is known.
     """
     program = state.stage.scene.program
     creeps = bool(state.stage.floats) and state.stage.has_stick_slip
+    change = 0.0
     for _ in range(min(MOST_CYCLES, program.strokes // len(program.cycle) - 1) if creeps else 0):
         saved = state.saved()
         try:
@@ -42,13 +50,24 @@ def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport]
         except ConvergenceError as error:
             log.info("%s: back to the cycle before", error)
             state.restore(saved)
-            return
+            break
         state.reports, before = reports, forces
         forces = [report.forces for report in reports]
         change = largest_change(before, forces)
         log.info("forces differ by %.2g from those of the cycle before", change)
         if change <= REPEATS:
-            return
+            break
+    return change
+
+
+def still_creeps(report: StrokeReport, change: float) -> StrokeReport:
+    """The report with a finding, if forces still change by more than ``REPEATS`` from cycle to cycle."""
+    if change <= REPEATS:
+        return report
+    sentence = f"the part still creeps where the wear begins: forces change by {100 * change:.0f} % of the largest "
+    sentence += "from one cycle to the next, and the wear may change as much; hold the part, or lower the friction of "
+    sentence += "what it rests on"
+    return replace(report, findings=(*report.findings, Finding("creep", change, sentence)))
 
 
 def largest_change(before: list[Forces], after: list[Forces]) -> float:

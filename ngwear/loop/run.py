@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.loop.checkpoint import load, save
+from ngwear.loop.friction_left_out import friction_errors
 from ngwear.loop.halved_elements import add_mesh_errors, faded
 from ngwear.loop.result import Result
 from ngwear.loop.state import State
@@ -124,8 +125,11 @@ def run(
     if error is not None and state is not None:
         _keep_last(stepper, state, recorder)
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
+    by_friction: dict[str, float] = {}
     if state is not None and error is None and errors is not None:
         add_mesh_errors(state)
+        by_friction, says = _by_friction(state)
+        warnings += says
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
     message, blown = "all strokes done", None if state is None else stepper.blown(state)
@@ -144,7 +148,7 @@ def run(
         summary = recorder.summary(state, status, message)
         summary["error estimates"] |= by_time_step
         if error is None and errors is not None:
-            summary["error estimates"] |= faded(state)
+            summary["error estimates"] |= faded(state) | by_friction
         summary["warnings"] += warnings
     if folder is not None:
         folder.finish(recorder, summary)
@@ -194,6 +198,14 @@ def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
         return time_step_errors(state), []
     except ConvergenceError as error:
         return {}, [f"the error of the time step is not known: a cycle with half the time step gave up ({error})"]
+
+
+def _by_friction(state: State) -> tuple[dict[str, float], list[str]]:
+    """Errors by friction that the part does not bear; a warning if the estimate fails."""
+    try:
+        return friction_errors(state), []
+    except ConvergenceError as error:
+        return {}, [f"the error by the friction left out is not known: a cycle with less of it gave up ({error})"]
 
 
 def _write_vtk(path: Path, state: State) -> None:

@@ -199,7 +199,7 @@ def _lower_friction(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
     share, why = stage.friction_shares.get(stroke.name, (1.0, ""))
     if share < 1:
         sentence = f"stroke '{stroke.name}': friction {why}; the results are for {100 * share:.0f} % of the friction, "
-        sentence += f"with which it still slides, and so are their stated errors. {CONSEQUENCES[why]}"
+        sentence += f"with which it still slides; their errors say what the rest of it may change. {CONSEQUENCES[why]}"
         yield Finding(f"less friction {stroke.name}", 1 - share, sentence)
 
 

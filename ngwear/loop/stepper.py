@@ -27,7 +27,7 @@ from ngwear.loop.mounting import (
 )
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
-from ngwear.loop.repeating_cycle import CYCLE_STEPS, repeat_cycle
+from ngwear.loop.repeating_cycle import CYCLE_STEPS, repeat_cycle, still_creeps
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State, StrokeReport
 from ngwear.loop.stroke_report import stroke_report
@@ -115,7 +115,8 @@ class Stepper:
         if scene.deactivation is None:
             repeat_cycle(state, self._pass, forces)  # most of the way on few elements
             self._refine(state)
-            repeat_cycle(state, self._pass, [report.forces for report in state.reports])
+            change = repeat_cycle(state, self._pass, [report.forces for report in state.reports])
+            state.reports[-1] = still_creeps(state.reports[-1], change)
         else:
             self._settle_cycle(state)
         arms = scene.arms

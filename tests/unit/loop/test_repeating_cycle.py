@@ -62,3 +62,12 @@ def test_the_change_is_that_of_the_forces_over_the_largest():
     after = [{"rod": [1.2, -4.0]}, {"rod": [0.0, 2.0]}]
     assert largest_change(before, after) == pytest.approx(0.05)
     assert largest_change([{"rod": [0.0, 0.0]}], [{"rod": [0.0, 0.0]}]) == 0.0
+
+
+def test_a_part_that_still_creeps_is_told(sticking, monkeypatch):
+    monkeypatch.setattr(stepper, "repeat_cycle", lambda *args: 2 * REPEATS)
+    (told,) = [found for found in Stepper(sticking).start().reports[-1].findings if found.key == "creep"]
+    assert told.amount == 2 * REPEATS
+    assert "forces change by 4 % of the largest from one cycle to the next" in told.sentence
+    monkeypatch.setattr(stepper, "repeat_cycle", lambda *args: REPEATS)
+    assert not any(found.key == "creep" for found in Stepper(sticking).start().reports[-1].findings)
