@@ -150,8 +150,9 @@ def lower_friction(
     why = reason(error) if must_not is None else CRUSHES
     work, held, goal = Work(), 0.0, 0.0
     over = must_not or (partial(creases, stretch=WRINKLING) if why == CREASES else _never)
-    for share in LOWER:
-        goal = share * reached
+    # Reversing, it may fail under the friction of the stroke before: then all of its own is tried first.
+    for share in LOWER if reached > 0 else (1.0, *LOWER):
+        goal = share * (reached or 1.0)
         try:
             work.add(_with_less_friction(stage, target, {name: goal * slip for name, slip in slips.items()}, start))
         except ConvergenceError:
@@ -198,6 +199,11 @@ def lower_friction(
 
 
 def _with_less_friction(stage: Stage, target: Loads, slips: Loads, start: Start) -> Work:
-    """Bring on a stroke's loads from its beginning, with these of friction in place of its own."""
+    """Bring on a stroke's loads from its beginning, these of friction in place of its own first, then the others."""
     start.restore(stage)
-    return advance(stage.problem, {**target, **slips}, StepOptions(first=FIRST, smallest=SMALLEST))
+    options = StepOptions(first=FIRST, smallest=SMALLEST)
+    work = advance(stage.problem, slips, options)
+    others = {name: load for name, load in target.items() if name not in slips}
+    if any(load != start.loads[name] for name, load in others.items()):
+        work.add(advance(stage.problem, others, options))
+    return work
