@@ -108,6 +108,9 @@ CASES: dict[str, Case] = {
         "ngwear.verify.confined_ring", 10, "a ring in a closed groove: its own pressure and the fluid's"
     ),
     "o_ring_squeeze": Case("ngwear.verify.o_ring_squeeze", 8, "an O-ring between two plates with Lindley's formula"),
+    "rolling_ring": Case(
+        "ngwear.verify.rolling_ring", 14, "an O-ring that a rod rolls, with the couple that turns a ring"
+    ),
     "block_on_ring": Case(
         "ngwear.verify.block_on_ring", 27, "a block worn over 3600 m with an implicit half-plane solver"
     ),
