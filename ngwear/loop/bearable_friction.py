@@ -25,6 +25,7 @@ log = logging.getLogger(__name__)
 
 BELOW = 0.9  # of the most friction that the part bears: wear and a new mesh move that by some per cent
 LOWER = (0.5, 0.25, 0.0)  # times the friction that it did not bear on the way there
+REVERSED = (1.0, 0.5, 0.25)  # times its own, before the other loads, if it fails while the friction still reverses
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
 NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched; less is none
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
@@ -148,21 +149,24 @@ def lower_friction(
         raise error
     reached = min(max(0.0, now[name] / slip) for name, slip in slips.items())
     why = reason(error) if must_not is None else CRUSHES
-    work, held, goal = Work(), 0.0, 0.0
+    work, held, goal, before_others = Work(), 0.0, 0.0, False
     over = must_not or (partial(creases, stretch=WRINKLING) if why == CREASES else _never)
-    # Reversing, it may fail under the friction of the stroke before: then all of its own is tried first.
-    for share in LOWER if reached > 0 else (1.0, *LOWER):
-        goal = share * (reached or 1.0)
+    goals = (
+        [(share * reached, False) for share in LOWER] if reached > 0 else [(0.0, False), *((s, True) for s in REVERSED)]
+    )
+    comes_on = False
+    for goal, before_others in goals:
+        less = {name: goal * slip for name, slip in slips.items()}
         try:
-            work.add(_with_less_friction(stage, target, {name: goal * slip for name, slip in slips.items()}, start))
+            work.add(_with_less_friction(stage, target, less, start, before_others=before_others))
         except ConvergenceError:
-            if share == LOWER[-1]:
-                raise error from None
+            comes_on = False
             continue
+        comes_on = True
         if not over(problem):
             break
     else:
-        if must_not is not None:
+        if must_not is not None or not comes_on:
             raise error
         over = _never  # the squeeze alone wrinkles it
     begun = goal
@@ -185,7 +189,7 @@ def lower_friction(
         held, less = share, {name: share * slip for name, slip in slips.items()}
         try:
             if from_start:
-                work.add(_with_less_friction(stage, target, less, start))
+                work.add(_with_less_friction(stage, target, less, start, before_others=before_others))
             else:
                 work.add(advance(problem, less, StepOptions(first=0.5, smallest=SMALLEST)))
             break
@@ -198,12 +202,11 @@ def lower_friction(
     return work
 
 
-def _with_less_friction(stage: Stage, target: Loads, slips: Loads, start: Start) -> Work:
-    """Bring on a stroke's loads from its beginning, these of friction in place of its own first, then the others."""
+def _with_less_friction(stage: Stage, target: Loads, slips: Loads, start: Start, *, before_others: bool) -> Work:
+    """Bring on a stroke's loads from its beginning, with these of friction in place of its own, maybe before others."""
     start.restore(stage)
-    options = StepOptions(first=FIRST, smallest=SMALLEST)
-    work = advance(stage.problem, slips, options)
-    others = {name: load for name, load in target.items() if name not in slips}
-    if any(load != start.loads[name] for name, load in others.items()):
-        work.add(advance(stage.problem, others, options))
+    options, work = StepOptions(first=FIRST, smallest=SMALLEST), Work()
+    if before_others:
+        work.add(advance(stage.problem, slips, options))
+    work.add(advance(stage.problem, {**target, **slips}, options))
     return work
