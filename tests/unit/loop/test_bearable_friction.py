@@ -89,7 +89,7 @@ def test_a_share_whose_loads_do_not_come_on_is_lowered_once_more(monkeypatch, be
     scene = coarse_for_mounting(with_mounting_lengths(rubbed()))
     stage, reached = Stage(scene, unworn_body(scene, 6.0)), []
 
-    def comes_on(stage, target, slips, start):
+    def comes_on(stage, target, slips, start, *, before_others):
         if reached and abs(slips["rod slip"]) > bears:
             raise ConvergenceError("the loads do not come on")
         reached.append(abs(slips["rod slip"]))
@@ -116,7 +116,7 @@ def test_at_last_it_goes_a_way_that_was_gone(monkeypatch):
     scene = coarse_for_mounting(with_mounting_lengths(rubbed()))
     stage, tried = Stage(scene, unworn_body(scene, 6.0)), []
 
-    def comes_on(stage, target, slips, start):
+    def comes_on(stage, target, slips, start, *, before_others):
         tried.append(abs(slips["rod slip"]))
         if tried[-1] != 0.25:
             raise ConvergenceError("the loads do not come on")
@@ -132,6 +132,30 @@ def test_at_last_it_goes_a_way_that_was_gone(monkeypatch):
     lower_friction(stage, "outward", target, rolls, Start.of(stage))
     assert tried == pytest.approx([0.25, BELOW * 0.25, BELOW**2 * 0.25, 0.25])
     assert stage.friction_shares["outward"] == (0.25, bearable_friction.ROLLS)
+
+
+def test_a_reversal_is_tried_without_friction_and_then_with_its_own_before_the_other_loads(stage, monkeypatch):
+    """The friction of the stroke before still acts where the loads have failed; they come on with half of its own."""
+    tried = []
+
+    def comes_on(stage, target, slips, start, *, before_others):
+        tried.append((slips["rod slip"], before_others))
+        if tried[-1] != (0.5, True):
+            raise ConvergenceError("the loads do not come on")
+        return Work()
+
+    def refuses(problem, slips, options):
+        raise ConvergenceError("no other friction")
+
+    monkeypatch.setattr(bearable_friction, "_with_less_friction", comes_on)
+    monkeypatch.setattr(bearable_friction, "advance", refuses)
+    monkeypatch.setattr(stage, "friction_shares", {})
+    target, rolls = stage.stroke_loads(stage.scene.program.cycle[1]), ConvergenceError("rolls", Report(Outcome.ROLLED))
+    stage.problem.set_loads({"rod slip": -0.6 * target["rod slip"]})
+    lower_friction(stage, "inward", target, rolls, Start.of(stage))
+    assert tried[:3] == [(0.0, False), (1.0, True), (0.5, True)]
+    assert tried[-1] == (0.5, True)
+    assert stage.friction_shares == {"inward": (0.5, bearable_friction.ROLLS)}
 
 
 def test_a_step_that_is_rejected_leaves_the_shares_as_they_were(stage):
