@@ -83,79 +83,72 @@ def test_friction_that_the_part_bears_is_brought_on_again():
     assert friction[0] == pytest.approx(0.02 * load[1], rel=1e-3)
 
 
-@pytest.mark.parametrize(("bears", "share"), [(0.23, BELOW * 0.25), (0.21, BELOW**2 * 0.25), (0.1, None)])
-def test_a_share_whose_loads_do_not_come_on_is_lowered_once_more(monkeypatch, bears, share):
-    """It slides with a quarter of the friction, not with more, and with ``bears`` when the loads come on anew."""
-    scene = coarse_for_mounting(with_mounting_lengths(rubbed()))
-    stage, reached = Stage(scene, unworn_body(scene, 6.0)), []
+def tries(stage, monkeypatch, *, stroke, reached, comes_on):
+    """Lower the friction of a stroke that has rolled the part over; return the tries, from the beginning of the stroke.
 
-    def comes_on(stage, target, slips, start, *, before_others):
-        if reached and abs(slips["rod slip"]) > bears:
+    ``reached``: share of the friction with which it has failed. ``comes_on(share, before_others)``: whether the loads
+    come on with that share. No other friction is found from there.
+    """
+    tried, index = [], [stroke.name for stroke in stage.scene.program.cycle].index(stroke)
+    target = stage.stroke_loads(stage.scene.program.cycle[index])
+
+    def begins(stage, target, slips, start, *, before_others):
+        tried.append((slips["rod slip"] / full, before_others))
+        if not comes_on(*tried[-1]):
             raise ConvergenceError("the loads do not come on")
-        reached.append(abs(slips["rod slip"]))
         return Work()
 
     def refuses(problem, slips, options):
         raise ConvergenceError("no other friction")
 
-    monkeypatch.setattr(bearable_friction, "_with_less_friction", comes_on)
+    full = target["rod slip"]
+    monkeypatch.setattr(bearable_friction, "_with_less_friction", begins)
     monkeypatch.setattr(bearable_friction, "advance", refuses)
-    target, rolls = stage.stroke_loads(scene.program.cycle[0]), ConvergenceError("rolls", Report(Outcome.ROLLED))
-    stage.problem.set_loads({"rod slip": 0.5 * target["rod slip"]})
+    stage.problem.set_loads({"rod slip": reached * full})
+    lower_friction(stage, stroke, target, ConvergenceError("rolls", Report(Outcome.ROLLED)), Start.of(stage))
+    return tried
+
+
+@pytest.fixture
+def unlowered(stage, monkeypatch):
+    """The ring at rest, with all of the friction."""
+    monkeypatch.setattr(stage, "friction_shares", {})
+    return stage
+
+
+@pytest.mark.parametrize(("bears", "share"), [(0.23, BELOW * 0.25), (0.21, BELOW**2 * 0.25), (0.1, None)])
+def test_a_share_whose_loads_do_not_come_on_is_lowered_once_more(unlowered, monkeypatch, bears, share):
+    """It slides with a quarter of the friction, not with more, and with ``bears`` when the loads come on anew."""
+    came = []
+
+    def comes_on(tried, before_others):
+        if came and tried > bears:
+            return False
+        came.append(tried)
+        return True
+
     if share is None:
         with pytest.raises(ConvergenceError, match="rolls"):
-            lower_friction(stage, "outward", target, rolls, Start.of(stage))
+            tries(unlowered, monkeypatch, stroke="outward", reached=0.5, comes_on=comes_on)
         return
-    lower_friction(stage, "outward", target, rolls, Start.of(stage))
-    assert reached == pytest.approx([0.25, share])
-    assert stage.friction_shares["outward"] == (pytest.approx(share), bearable_friction.ROLLS)
+    tries(unlowered, monkeypatch, stroke="outward", reached=0.5, comes_on=comes_on)
+    assert came == pytest.approx([0.25, share])
+    assert unlowered.friction_shares["outward"] == (pytest.approx(share), bearable_friction.ROLLS)
 
 
-def test_at_last_it_goes_a_way_that_was_gone(monkeypatch):
+def test_at_last_it_goes_a_way_that_was_gone(unlowered, monkeypatch):
     """With a quarter of the friction the loads come on, with nothing else."""
-    scene = coarse_for_mounting(with_mounting_lengths(rubbed()))
-    stage, tried = Stage(scene, unworn_body(scene, 6.0)), []
-
-    def comes_on(stage, target, slips, start, *, before_others):
-        tried.append(abs(slips["rod slip"]))
-        if tried[-1] != 0.25:
-            raise ConvergenceError("the loads do not come on")
-        return Work()
-
-    def refuses(problem, slips, options):
-        raise ConvergenceError("no other friction")
-
-    monkeypatch.setattr(bearable_friction, "_with_less_friction", comes_on)
-    monkeypatch.setattr(bearable_friction, "advance", refuses)
-    target, rolls = stage.stroke_loads(scene.program.cycle[0]), ConvergenceError("rolls", Report(Outcome.ROLLED))
-    stage.problem.set_loads({"rod slip": 0.5 * target["rod slip"]})
-    lower_friction(stage, "outward", target, rolls, Start.of(stage))
-    assert tried == pytest.approx([0.25, BELOW * 0.25, BELOW**2 * 0.25, 0.25])
-    assert stage.friction_shares["outward"] == (0.25, bearable_friction.ROLLS)
+    tried = tries(unlowered, monkeypatch, stroke="outward", reached=0.5, comes_on=lambda share, _: share == 0.25)
+    assert [share for share, _ in tried] == pytest.approx([0.25, BELOW * 0.25, BELOW**2 * 0.25, 0.25])
+    assert unlowered.friction_shares["outward"] == (0.25, bearable_friction.ROLLS)
 
 
-def test_a_reversal_is_tried_without_friction_and_then_with_its_own_before_the_other_loads(stage, monkeypatch):
+def test_a_reversal_is_tried_without_friction_and_then_with_its_own_before_the_other_loads(unlowered, monkeypatch):
     """The friction of the stroke before still acts where the loads have failed; they come on with half of its own."""
-    tried = []
-
-    def comes_on(stage, target, slips, start, *, before_others):
-        tried.append((slips["rod slip"], before_others))
-        if tried[-1] != (0.5, True):
-            raise ConvergenceError("the loads do not come on")
-        return Work()
-
-    def refuses(problem, slips, options):
-        raise ConvergenceError("no other friction")
-
-    monkeypatch.setattr(bearable_friction, "_with_less_friction", comes_on)
-    monkeypatch.setattr(bearable_friction, "advance", refuses)
-    monkeypatch.setattr(stage, "friction_shares", {})
-    target, rolls = stage.stroke_loads(stage.scene.program.cycle[1]), ConvergenceError("rolls", Report(Outcome.ROLLED))
-    stage.problem.set_loads({"rod slip": -0.6 * target["rod slip"]})
-    lower_friction(stage, "inward", target, rolls, Start.of(stage))
+    tried = tries(unlowered, monkeypatch, stroke="inward", reached=-0.6, comes_on=lambda *way: way == (0.5, True))
     assert tried[:3] == [(0.0, False), (1.0, True), (0.5, True)]
     assert tried[-1] == (0.5, True)
-    assert stage.friction_shares == {"inward": (0.5, bearable_friction.ROLLS)}
+    assert unlowered.friction_shares == {"inward": (0.5, bearable_friction.ROLLS)}
 
 
 def test_a_step_that_is_rejected_leaves_the_shares_as_they_were(stage):
