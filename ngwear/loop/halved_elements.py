@@ -3,8 +3,9 @@
 Coarser runs may all miss what the elements of none of them resolve, and then agree. The change of peak pressures, loads
 and widths with half the edges does not depend on them. First order is assumed: the error is twice that change. It is
 computed before the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how
-much of the largest wear per cycle is left at the end. A worn outline has points for its own elements only, so that
-finer ones show peaks that are none; it is used if there is no equilibrium on the finer ones before.
+much of the largest wear per cycle is left at the end. That of the peak pressure counts whole: the peak may move to the
+end of the contact, where wear leaves an edge. A worn outline has points for its own elements only, so that finer ones
+show peaks that are none; it is used if there is no equilibrium on the finer ones before.
 
 Only for parts with room to move, which are mounted on coarse elements.
 """
@@ -19,13 +20,14 @@ import numpy as np
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.loop.cycle_quantities import Quantities, read_cycle
-from ngwear.loop.finer_mesh import refine_everywhere, remeshes
+from ngwear.loop.finer_mesh import FINER, refine_everywhere, remeshes
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.time_step_error import next_cycle
-from ngwear.results.quantities_of_interest import BY_HALVED, DEPTH
+from ngwear.results.quantities_of_interest import BY_HALVED, DEPTH, PEAK
 from ngwear.results.richardson import relative_errors
 
+BY_PEAK = f"{PEAK[:-4]} {BY_HALVED}"
 REMAINS = 2.0  # of first order: the error over what halves change, 1 / (1 - 1/2)
 log = logging.getLogger(__name__)
 
@@ -52,9 +54,9 @@ def add_mesh_errors(state: State) -> None:
 
 
 def faded(state: State) -> dict[str, float]:
-    """``State.mesh_errors`` times what is left at the end of the largest wear per cycle when they were computed."""
+    """``State.mesh_errors`` times what is left of the largest wear per cycle; that of the peak pressure as it is."""
     left = min(1.0, _largest_wear(read_cycle(state)) / state.first_wear) if state.first_wear > 0 else 1.0
-    return {name: left * error for name, error in state.mesh_errors.items()}
+    return {name: error * (1.0 if name == BY_PEAK else left) for name, error in state.mesh_errors.items()}
 
 
 def _largest_wear(read: Quantities) -> float:
@@ -62,8 +64,13 @@ def _largest_wear(read: Quantities) -> float:
 
 
 def _on_halved(state: State) -> State:
-    """A copy of the state with halved elements, on which the cycle is solved without wear."""
-    there = copy(state)
+    """A copy of the state with halved elements, on which the cycle is solved without wear.
+
+    An outline that has not worn is rounded off less, too, as for a patch with half the edges.
+    """
+    there, scene = copy(state), state.stage.scene
+    there.stage = copy(state.stage)
+    there.stage.scene = replace(scene, accuracy=replace(scene.accuracy, patch=FINER * scene.accuracy.lengths.patch))
     there.work, there.ledger = copy(state.work), state.ledger.copy()
     there.phases = [replace(phase) for phase in state.phases]
     refine_everywhere(there)

@@ -51,6 +51,7 @@ def test_errors_fade_as_the_wear_does(mounted):
     assert faded(mounted) == mounted.mesh_errors
     mounted.first_wear *= 2
     assert faded(mounted)[BY_DEPTH] == pytest.approx(0.5 * mounted.mesh_errors[BY_DEPTH])
+    assert faded(mounted)[BY_PEAK] == mounted.mesh_errors[BY_PEAK]
     mounted.first_wear *= 0.1  # wear that grows does not make them larger
     assert faded(mounted) == mounted.mesh_errors
 
