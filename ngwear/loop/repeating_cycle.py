@@ -60,14 +60,15 @@ def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport]
     return change
 
 
-def still_creeps(report: StrokeReport, change: float) -> StrokeReport:
-    """The report with a finding, if forces still change by more than ``REPEATS`` from cycle to cycle."""
+def still_creeps(reports: list[StrokeReport], change: float) -> list[StrokeReport]:
+    """The reports, the last with a finding if forces still change by more than ``REPEATS`` from cycle to cycle."""
     if change <= REPEATS:
-        return report
+        return reports
     sentence = f"the part still creeps where the wear begins: forces change by {100 * change:.0f} % of the largest "
     sentence += "from one cycle to the next, and the wear may change as much; hold the part, or lower the friction of "
     sentence += "what it rests on"
-    return replace(report, findings=(*report.findings, Finding("creep", change, sentence)))
+    *others, last = reports
+    return [*others, replace(last, findings=(*last.findings, Finding("creep", change, sentence)))]
 
 
 def largest_change(before: list[Forces], after: list[Forces]) -> float:

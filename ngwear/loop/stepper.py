@@ -116,7 +116,7 @@ class Stepper:
             repeat_cycle(state, self._pass, forces)  # most of the way on few elements
             self._refine(state)
             change = repeat_cycle(state, self._pass, [report.forces for report in state.reports])
-            state.reports[-1] = still_creeps(state.reports[-1], change)
+            state.reports = still_creeps(state.reports, change)
         else:
             self._settle_cycle(state)
         arms = scene.arms

@@ -9,7 +9,7 @@ import ngwear as nw
 from ngwear.equilibrium import stepping
 from ngwear.errors import ConvergenceError
 from ngwear.loop import bearable_friction, finer_mesh, stepper
-from ngwear.loop.bearable_friction import LOWER
+from ngwear.loop.bearable_friction import REVERSED
 from ngwear.loop.finer_mesh import EVERYWHERE, LOCALLY, refine_at, unresolved
 from ngwear.loop.solution_checks import Finding
 from ngwear.loop.stepper import Stepper
@@ -74,10 +74,10 @@ def test_it_gives_up_on_the_finest_elements(ring, monkeypatch):
         return stepping.advance(problem, target, *args, **kwargs)
 
     monkeypatch.setattr(finer_mesh, "advance", way)
-    monkeypatch.setattr(bearable_friction, "advance", way)  # it is tried with less friction on the first elements
+    monkeypatch.setattr(bearable_friction, "advance", way)  # then with less friction on the first elements
     with pytest.raises(ConvergenceError, match="stopped"):
         Stepper(ring).start()
-    assert len(halved) == EVERYWHERE + 1 + len(LOWER)
+    assert len(halved) == EVERYWHERE + 1 + len((0.0, *REVERSED))
     assert np.all(np.diff(halved[: EVERYWHERE + 1]) > 0)
     assert set(halved[EVERYWHERE + 1 :]) == {halved[0]}
 
