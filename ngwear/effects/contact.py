@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
@@ -10,7 +9,6 @@ from typing import Any
 import ngsolve as ng
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from ngwear.effects.base import DISPLACEMENT, Unknowns
 from ngwear.effects.contact_profile import ContactProfile, EdgeNodes, nodal_pressure
@@ -23,7 +21,6 @@ from ngwear.surfaces import RigidSurface, WornProfile
 
 Array = NDArray[np.float64]
 BESIDE = 3  # mesh edges from a loaded one to which its smoothed pressure reaches (``Ripples``)
-BESIDE_WIDTH = 0.25  # of a contact's width: how far beside it friction compresses the surface
 ENDS = ng.IntegrationRule([(0.0,), (1.0,)], [0.5, 0.5])
 
 
@@ -329,18 +326,10 @@ class OutlineContact(UnilateralContact):
         return 1 / self.nodes.average(resistance)
 
     def least_stretch(self) -> tuple[float, Array]:
-        """Least stretch da/dA of the loaded mesh edges, and the reference place of that edge's middle [mm].
-
-        Edges beside them count up to a quarter of the width of what is loaded: there, the compression by friction has
-        fallen to 0.4 of that at the end of the contact (K. L. Johnson, *Contact Mechanics* (1985), section 7.1).
-        """
-        u, ends, loaded = self._state[DISPLACEMENT], self.end_places(), self.touching()
-        stretch, middles = self.sample_middles(self._kinematics.area_stretch(u, ng.Grad(u))), ends.mean(axis=1)
-        if loaded.any():
-            width = np.linalg.norm(ends[loaded, 1] - ends[loaded, 0], axis=-1).sum()
-            away, _ = cKDTree(middles[loaded]).query(middles)
-            stretch = np.where(away <= BESIDE_WIDTH * width, stretch, math.inf)
-        return float(stretch.min()), middles[int(stretch.argmin())]
+        """Least stretch da/dA of the named edges, and the reference place of that mesh edge's middle [mm]."""
+        u = self._state[DISPLACEMENT]
+        stretch = self.sample_middles(self._kinematics.area_stretch(u, ng.Grad(u)))
+        return float(stretch.min()), self.end_places()[int(stretch.argmin())].mean(axis=0)
 
     def touching(self) -> NDArray[np.bool_]:
         """Which of the mesh edges in ``positions`` carry pressure."""
