@@ -50,6 +50,7 @@ from ngwear.loop.run import run as run_scene
 from ngwear.parallel.workers import Worker, of_modules
 from ngwear.results.kept_sections import KeptSections
 from ngwear.results.quantities_of_interest import (
+    BY_HALVED,
     BY_TIME_STEP,
     DEPTH,
     LOST,
@@ -277,10 +278,11 @@ class _CoarserRuns:
         """Wait for the coarser runs, and write the error estimates into the summary."""
         other = self._wait_for(*self.runs[0])
         if "gave up" in other:
-            by_halved = with_parts(summary["error estimates"])
+            parts = summary["error estimates"]
+            by_halved = any(name.endswith(BY_HALVED) for name in parts)
             says = "known from elements of half the edges alone" if by_halved else "not known"
             summary["warnings"].append(f"the coarser run gave up: {other['gave up']}; the error of the mesh is {says}")
-            state_errors(summary, summary["error estimates"] | by_halved)
+            state_errors(summary, parts | with_parts(parts))
             return
         embedded, mine = summary["error estimates"], quantities(recorder.rows)
         ratio = edge_ratio(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))

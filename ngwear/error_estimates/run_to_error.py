@@ -194,11 +194,11 @@ class _LevelSummary:
         for power, name in ((1, "companion"), (2, "coarsest companion")):
             if (across / COARSER**power, parts) not in run:
                 cpu += summary.get(f"CPU time of the {name} [s]", 0.0)
-        levels_mend = {name: _by_mesh_and_steps(estimated, name) for name in (DEPTH, PEAK)}
-        self.mine = {ACROSS: across, PARTS: parts, DEPTH: levels_mend[DEPTH] if known else None, CPU: round(cpu, 3)}
+        by_mesh = {name: _by_mesh_and_steps(estimated, name) for name in (DEPTH, PEAK)}
+        self.mine = {ACROSS: across, PARTS: parts, DEPTH: by_mesh[DEPTH] if known else None, CPU: round(cpu, 3)}
         self.mine[BY_TIME] = estimated.get(BY_TIME, 0.0)
         if PEAK in self.asked:
-            self.mine[PEAK] = levels_mend[PEAK]
+            self.mine[PEAK] = by_mesh[PEAK]
         columns = (ACROSS, PARTS, *self.asked, CPU)
         levels = [{name: entry[name] for name in columns} for entry in (*self.done, self.mine)]
         summary["error asked for [-]"], summary["levels"] = self.asked[DEPTH], levels

@@ -1,4 +1,4 @@
-"""Error by the mesh: a cycle is solved again on elements of half the edges, on the same outline, without wear.
+"""Error by the mesh: a cycle is solved again on elements of half the edges, without wear.
 
 Coarser runs may all miss what the elements of none of them resolve, and then agree. The change of peak pressures, loads
 and widths with half the edges does not depend on them. First order is assumed: the error is twice that change. It is

@@ -24,7 +24,16 @@ from ngwear.loop.run import run
 from ngwear.materials import PronySeries
 from ngwear.parallel.workers import Worker
 from ngwear.plots import wear
-from ngwear.results.quantities_of_interest import DEPTH, LOST, PEAK, PLACES, element_edge, quantities
+from ngwear.results.quantities_of_interest import (
+    BY_FRICTION,
+    BY_HALVED,
+    DEPTH,
+    LOST,
+    PEAK,
+    PLACES,
+    element_edge,
+    quantities,
+)
 from ngwear.results.recorder import TORN, fingerprint
 from ngwear.results.result_file import read_result
 from ngwear.results.richardson import relative_errors
@@ -251,6 +260,20 @@ def test_a_companion_that_gives_up_loses_nothing(tmp_path):
     assert summary["warnings"] == ["the coarser run gave up: no equilibrium; the error of the mesh is not known"]
     assert "peak pressure [-]" not in summary["error estimates"]
     assert np.isfinite(summary["error estimates"]["maximum depth [-]"])
+
+
+@pytest.mark.parametrize(("part", "known"), [(BY_FRICTION, "not known"), (BY_HALVED, "known from elements of half")])
+def test_without_a_companion_only_halved_elements_tell_of_the_mesh(tmp_path, part, known):
+    """Friction left out is no error of the mesh."""
+    short = scene("implicit")
+    left = {"scene": fingerprint(coarser_scene(short)), "gave up": "no equilibrium"}
+    (tmp_path / FILE).write_text(json.dumps(left))
+    summary = {"error estimates": {f"{DEPTH[:-4]} {part}": 0.1}, "warnings": []}
+    companion._CoarserRuns(short, tmp_path, None, None).state(None, summary)
+    assert summary["warnings"][0].startswith(
+        f"the coarser run gave up: no equilibrium; the error of the mesh is {known}"
+    )
+    assert summary["error estimates"][DEPTH] == 0.1
 
 
 def test_a_part_with_room_waits_for_one_companion_as_long_as_its_run_took(tmp_path):
