@@ -14,6 +14,7 @@ from ngwear.geometry.outline import Outline
 Array = NDArray[np.float64]
 
 
+VALLEY = 0.5  # of the lower peak beside it: pressure that divides a zone
 LEAST_WIDTH = 0.5  # of a mesh edge: a contact within it has no width that its nodes could tell
 
 
@@ -181,6 +182,28 @@ class ContactProfile:
         zones = self._from(off)._pieces(np.roll(on, -off))
         zones = [replace(zone, nodes=(zone.nodes + off) % n) for zone in zones]
         return sorted(zones, key=lambda zone: int(zone.nodes[0]))
+
+    def bumps(self) -> list[Zone]:
+        """The zones, divided where the pressure between two peaks falls below ``VALLEY`` times the lower of them.
+
+        The node in the valley belongs to both. The lobes of an X-ring touch in one zone, and need elements across each.
+        """
+        return [bump for zone in self.zones() for bump in self._divided(zone)]
+
+    def _divided(self, zone: Zone) -> list[Zone]:
+        p = self.pressure[zone.nodes]
+        peak = np.minimum(np.maximum.accumulate(p), np.maximum.accumulate(p[::-1])[::-1])  # the lower one beside
+        valley = int(np.argmin(p / peak))
+        if p[valley] >= VALLEY * peak[valley]:
+            return [zone]
+        x = self.place[zone.nodes]
+        way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
+        before = float(np.linalg.norm(x[0] - zone.start))
+        width = min(max(before + float(way[valley]), 0.0), zone.width)
+        first, last = zone.nodes[: valley + 1], zone.nodes[valley:]
+        left = Zone(zone.start, x[valley], float(p[: valley + 1].max()), width, first)
+        right = Zone(x[valley], zone.end, float(p[valley:].max()), zone.width - width, last)
+        return [*self._divided(left), *self._divided(right)]
 
     def _pieces(self, on: NDArray[np.bool_]) -> list[Zone]:
         """Connected pieces of these nodes."""

@@ -139,8 +139,8 @@ def _beside(contour: Outline, t: Array, apart: float) -> Array:
 
 
 def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:
-    """Element edge at each node of a contact, by the width of the nearest zone, shape (k,) [mm]."""
-    if across is None or not (zones := profile.zones()):
+    """Element edge at each node of a contact, by the width of the nearest bump, shape (k,) [mm]."""
+    if across is None or not (zones := profile.bumps()):
         return np.full(len(profile.t), patch)
     nodes = np.concatenate([zone.nodes for zone in zones])
     edges = np.concatenate([np.full(len(zone.nodes), zone.width / across) for zone in zones])

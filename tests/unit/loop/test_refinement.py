@@ -85,6 +85,33 @@ def test_narrow_zones_have_elements_of_their_own():
     assert element_edges(replace(profile, pressure=np.zeros(12)), patch, 4.0) == pytest.approx(patch)
 
 
+def test_bumps_are_divided_where_the_pressure_falls_below_half_the_lower_peak():
+    x = np.linspace(0.0, 1.2, 13)
+    two = np.array([0.0, 2.0, 4.0, 3.0, 1.1, 1.0, 1.5, 2.5, 3.0, 2.0, 1.6, 1.0, 0.0])
+    profile = ContactProfile(
+        t=np.arange(13.0),
+        reference=np.stack([x, 0 * x], axis=1),
+        place=np.stack([x, 0 * x], axis=1),
+        nominal_pressure=two,
+        pressure=two,
+        gap=np.where(two > 0, 0.0, 0.01),
+        weight=np.full(13, 0.1),
+        load=0.1 * two,
+        edges=np.array([[i, i + 1] for i in range(12)]),
+        mean=0.5 * (two[1:] + two[:-1]),
+    )
+    (zone,), (left, right) = profile.zones(), profile.bumps()
+    assert list(left.nodes) == [1, 2, 3, 4, 5]
+    assert list(right.nodes) == [5, 6, 7, 8, 9, 10, 11]
+    assert left.width == pytest.approx(0.5 - zone.start[0])
+    assert left.width + right.width == pytest.approx(zone.width)
+    assert (left.peak, right.peak) == (4.0, 3.0)
+    sizes = element_edges(profile, 0.2, 4.0)
+    assert sizes[[2, 8]] == pytest.approx([left.width / 4, right.width / 4])
+    shallow = replace(profile, pressure=np.maximum(two, np.where(two > 0, 1.6, 0.0)))  # above half of the lower peak
+    assert len(shallow.bumps()) == 1
+
+
 def test_the_element_edge_in_contact_is_the_mean_by_load():
     place = np.stack([[0.0, 0.1, 0.3, 0.6], np.zeros(4)], axis=1)
     values = dict.fromkeys(("nominal_pressure", "pressure", "gap", "weight", "load"), np.zeros(4))
