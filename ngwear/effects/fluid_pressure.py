@@ -58,6 +58,8 @@ class FluidPressure(EdgePressure):
     traps : bool
         Whether pockets keep the fluid's pressure (``TrappedFluid``), False at first: then it does not stay behind a
         contact when its pressure falls.
+    holding : float
+        Share of the fluid's pressure that a contact must carry to hold it; ``1 - LESS`` at first.
 
     paths : list of tuple of int and array
         The two ways from the inlet: the direction along the outline, 1 or -1, and the mesh edges.
@@ -83,7 +85,7 @@ class FluidPressure(EdgePressure):
         self.inlet, self.contacts = tuple(inlet), tuple(contacts)
         self.name, self.held = name, tuple(held)
         self.others: tuple[FluidPressure, ...] = ()
-        self.traps, self._last = False, 0.0
+        self.traps, self._last, self.holding = False, 0.0, 1 - LESS
         if not self.inlet or not set(self.inlet) <= set(self.edges):
             raise SceneError("fluid.inlet", list(self.inlet), f"must name some of the fluid's edges {list(self.edges)}")
         self.pressure = ng.Parameter(0.0)
@@ -259,7 +261,7 @@ class FluidPressure(EdgePressure):
                 if len(stop) == 0:
                     continue
             most = np.maximum(bears[path], np.append(bears[path[1:]], 0.0))[stop]
-            holds = stop[most >= (1 - LESS) * self.pressure.Get()]
+            holds = stop[most >= self.holding * self.pressure.Get()]
             last = int(holds[0]) if len(holds) else int(stop[most.argmax()])
             if last > stop[0]:
                 self._passed[k] = last

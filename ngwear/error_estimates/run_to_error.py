@@ -35,7 +35,7 @@ from ngwear.errors import ResultError
 from ngwear.files.result_folder import CHECKPOINT, COMPLETED, OutFolder
 from ngwear.loop.result import Result
 from ngwear.parallel.workers import Worker
-from ngwear.results.quantities_of_interest import BY_FRICTION, BY_TIME_STEP, DEPTH, PEAK
+from ngwear.results.quantities_of_interest import APART, BY_TIME_STEP, DEPTH, PEAK
 from ngwear.results.recorder import fingerprint
 from ngwear.scene.accuracy import MOST_ACROSS
 from ngwear.scene.scene import Scene
@@ -217,9 +217,9 @@ class _LevelSummary:
 
 
 def _by_mesh_and_steps(estimated: Mapping[str, float], name: str) -> float | None:
-    """An estimated error without what friction left out has in it, which no finer level lowers."""
+    """An estimated error without the parts that no finer level lowers."""
     total = estimated.get(name)
-    return None if total is None else total - estimated.get(f"{name[:-4]} {BY_FRICTION}", 0.0)
+    return None if total is None else total - sum(estimated.get(f"{name[:-4]} {part}", 0.0) for part in APART)
 
 
 def _earlier_levels(folder: OutFolder, scene: Scene, *, resume: bool) -> list[dict[str, Any]]:

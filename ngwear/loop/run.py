@@ -13,6 +13,7 @@ from typing import Any, Protocol
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.loop.checkpoint import load, save
+from ngwear.loop.fluid_let_in import fluid_errors
 from ngwear.loop.friction_left_out import friction_errors
 from ngwear.loop.halved_elements import add_mesh_errors, faded
 from ngwear.loop.result import Result
@@ -125,10 +126,10 @@ def run(
     if error is not None and state is not None:
         _keep_last(stepper, state, recorder)
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
-    by_friction: dict[str, float] = {}
+    apart: dict[str, float] = {}
     if state is not None and error is None and errors is not None:
         add_mesh_errors(state)
-        by_friction, says = _by_friction(state)
+        apart, says = _that_stand_apart(state)
         warnings += says
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu
     status = COMPLETED if error is None else GAVE_UP
@@ -148,7 +149,7 @@ def run(
         summary = recorder.summary(state, status, message)
         summary["error estimates"] |= by_time_step
         if error is None and errors is not None:
-            summary["error estimates"] |= faded(state) | by_friction
+            summary["error estimates"] |= faded(state) | apart
         summary["warnings"] += warnings
     if folder is not None:
         folder.finish(recorder, summary)
@@ -200,12 +201,19 @@ def _by_time_step(state: State) -> tuple[dict[str, float], list[str]]:
         return {}, [f"the error of the time step is not known: a cycle with half the time step gave up ({error})"]
 
 
-def _by_friction(state: State) -> tuple[dict[str, float], list[str]]:
-    """Errors by friction that the part does not bear; a warning if the estimate fails."""
+def _that_stand_apart(state: State) -> tuple[dict[str, float], list[str]]:
+    """Errors by friction that the part does not bear, and by fluid that a contact just holds; warnings if one fails."""
+    errors: dict[str, float] = {}
+    warnings: list[str] = []
     try:
-        return friction_errors(state), []
+        errors |= friction_errors(state)
     except ConvergenceError as error:
-        return {}, [f"the error by the friction left out is not known: a cycle with less of it gave up ({error})"]
+        warnings.append(f"the error by the friction left out is not known: a cycle with less of it gave up ({error})")
+    try:
+        errors |= fluid_errors(state)
+    except ConvergenceError as error:
+        warnings.append(f"the error by the fluid that may come in is not known: the cycle with it gave up ({error})")
+    return errors, warnings
 
 
 def _write_vtk(path: Path, state: State) -> None:

@@ -28,6 +28,7 @@ COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node
 ALTERNATES = 3  # nodes in a row whose second differences change sign: two bumps on five nodes are not resolved
 UNBALANCED = 1e-5  # of the largest force: sum of all forces where no support takes a part of it
+BARELY_HELD = "barely held"  # beginning of a key
 # What friction does that a part does not bear, and what follows.
 ROLLS, CREASES, CRUSHES = "rolls the part over", "creases the surface", "crushes elements"
 NO_STATE = "leaves the part no equilibrium that load steps reach"
@@ -224,8 +225,8 @@ def _barely_held(stage: Stage, stroke: Stroke) -> Iterator[Finding]:
         sentence = (
             f"stroke '{stroke.name}': the contact at '{held.edge}' carries {held.ridge:.3g} MPa where it holds the "
             f"{held.pressure:.3g} MPa of '{held.inlet}', and only {held.behind:.3g} MPa behind: the fluid may come in "
-            f"up to '{held.next_edge}', and pressures and wear would be others, by more than the stated errors; "
-            "compare with a finer accuracy"
+            f"up to '{held.next_edge}', and pressures and wear would be others; if it is held so at the end, too, the "
+            "stated errors have a part by it; compare with a finer accuracy"
         )
         over = held.ridge / held.pressure - 1
-        yield Finding(f"barely held {stroke.name} {held.inlet} {held.edge}", 1 - over, sentence)
+        yield Finding(f"{BARELY_HELD} {stroke.name} {held.inlet} {held.edge}", 1 - over, sentence)

@@ -7,6 +7,11 @@ import numpy as np
 import pytest
 
 import ngwear as nw
+from ngwear.loop import fluid_let_in
+from ngwear.loop.fluid_let_in import fluid_errors
+from ngwear.loop.run import run
+from ngwear.loop.solution_checks import BARELY_HELD, Finding
+from ngwear.results.quantities_of_interest import BY_FLUID, DEPTH, PEAK
 
 ROD, BORE = 22.0, 30.0
 POINTS = [(0.0, 11.15), (1.8, 11.15), (4.6, 10.6), (4.9, 10.6), (6.0, 11.6), (6.0, 12.2), (2.5, 12.2)]
@@ -97,3 +102,38 @@ def test_a_stage_takes_the_places_to_its_own_mesh(cup):
     assert np.abs(stage.fluid_passed()[known] - places[known]).max() < 1e-12
     stage.let_fluid_pass(None)
     assert stage.fluid_passed() is None
+
+
+def test_the_error_by_a_fluid_that_is_just_held_is_what_it_changes_if_let_in(cup, monkeypatch):
+    """The shoulder dams the little pressure; let in, the fluid acts on the whole annulus."""
+    _, state = cup
+    kept, seen, whole = state.saved(), [], fluid_let_in.read_cycle
+    monkeypatch.setattr(fluid_let_in, "read_cycle", lambda at: seen.append(at.reports) or whole(at))
+    assert fluid_errors(state) == {}
+    held = replace(state.reports[1], findings=(Finding(f"{BARELY_HELD} hold 0.5", 1.0, ""),))
+    state.reports = [state.reports[0], held, *state.reports[2:]]
+    monkeypatch.setattr(fluid_let_in, "ERRS", 3.0)  # more than the shoulder carries
+    errors = fluid_errors(state)
+    as_it_is, let_in = (axial(reports[1]) / (0.5 * math.pi / 4 * (BORE**2 - ROD**2)) for reports in seen)
+    assert as_it_is < 0.97
+    assert let_in == pytest.approx(1.0, rel=5e-3)
+    assert errors[f"{PEAK[:-4]} {BY_FLUID}"] > 0.001
+    assert [fluid.holding for fluid in state.stage.fluids.values()] == [0.95]
+    assert (state.stage.problem.state.vec.FV().NumPy() == state.phases[-1].vector).all()
+    state.restore(kept)
+
+
+def test_a_run_states_it_or_says_that_it_is_not_known(ring, monkeypatch):
+    from ngwear.loop import run as module
+
+    monkeypatch.setattr(module, "add_mesh_errors", lambda state: None)
+    by_fluid = f"{DEPTH[:-4]} {BY_FLUID}"
+    monkeypatch.setattr(module, "fluid_errors", lambda state: {by_fluid: 0.4})
+    assert run(ring, errors=lambda recorder, summary: None).summary["error estimates"][by_fluid] == 0.4
+
+    def fails(state):
+        raise nw.ConvergenceError("no equilibrium")
+
+    monkeypatch.setattr(module, "fluid_errors", fails)
+    told = run(ring, errors=lambda recorder, summary: None).summary
+    assert any("the error by the fluid that may come in is not known" in warning for warning in told["warnings"])
