@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
@@ -14,7 +15,8 @@ from ngwear.geometry.outline import Outline
 Array = NDArray[np.float64]
 
 
-VALLEY = 0.5  # of the lower peak beside it: pressure that divides a zone
+HALF = 0.5  # of a node's pressure: what the pressure around it is above as far as its bump goes
+HERTZ = math.sqrt(1 - HALF**2)  # width at that pressure over the whole one of a Hertz pressure
 LEAST_WIDTH = 0.5  # of a mesh edge: a contact within it has no width that its nodes could tell
 
 
@@ -183,27 +185,29 @@ class ContactProfile:
         zones = [replace(zone, nodes=(zone.nodes + off) % n) for zone in zones]
         return sorted(zones, key=lambda zone: int(zone.nodes[0]))
 
-    def bumps(self) -> list[Zone]:
-        """The zones, divided where the pressure between two peaks falls below ``VALLEY`` times the lower of them.
+    def bump_widths(self) -> Array:
+        """Width of the bump of pressure at each node, shape (k,) [mm]; 0 where none acts.
 
-        The node in the valley belongs to both. The lobes of an X-ring touch in one zone, and need elements across each.
+        It is that of the zone if the pressure is Hertz's: the way along which the pressure around the node is above
+        half of the node's own, over ``sqrt(3)/2``, and at most the zone's width. A lobe, or a peak at the end of a
+        contact, has a width of its own.
         """
-        return [bump for zone in self.zones() for bump in self._divided(zone)]
-
-    def _divided(self, zone: Zone) -> list[Zone]:
-        p = self.pressure[zone.nodes]
-        peak = np.minimum(np.maximum.accumulate(p), np.maximum.accumulate(p[::-1])[::-1])  # the lower one beside
-        valley = int(np.argmin(p / peak))
-        if p[valley] >= VALLEY * peak[valley]:
-            return [zone]
-        x = self.place[zone.nodes]
-        way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(x, axis=0), axis=1))])
-        before = float(np.linalg.norm(x[0] - zone.start))
-        width = min(max(before + float(way[valley]), 0.0), zone.width)
-        first, last = zone.nodes[: valley + 1], zone.nodes[valley:]
-        left = Zone(zone.start, x[valley], float(p[: valley + 1].max()), width, first)
-        right = Zone(x[valley], zone.end, float(p[valley:].max()), zone.width - width, last)
-        return [*self._divided(left), *self._divided(right)]
+        widths = np.zeros(len(self.t))
+        for zone in self.zones():
+            x, p = self.place[zone.nodes], self.pressure[zone.nodes]
+            ways = np.cumsum(np.linalg.norm(np.diff(x, axis=0, prepend=x[:1]), axis=1))
+            before = np.clip(np.linalg.norm(x[0] - zone.start), 0.0, zone.width)
+            at = np.concatenate([[-before], ways, [max(zone.width - before, ways[-1])]])
+            pressed = np.concatenate([[0.0], p, [0.0]])
+            for i, own in enumerate(p, start=1):
+                low = np.flatnonzero(pressed < HALF * own)
+                left, right = low[low < i][-1], low[low > i][0]
+                ends = [
+                    np.interp(HALF * own, pressed[[out, out + step]], at[[out, out + step]])
+                    for out, step in ((left, 1), (right, -1))
+                ]
+                widths[zone.nodes[i - 1]] = min((ends[1] - ends[0]) / HERTZ, zone.width)
+        return widths
 
     def _pieces(self, on: NDArray[np.bool_]) -> list[Zone]:
         """Connected pieces of these nodes."""

@@ -53,7 +53,7 @@ def with_patch(scene: Scene, least: float) -> Scene:
 def with_contact_lengths(stage: Stage, phases: list[Array], across: float) -> Scene:
     """The stage's scene with ``patch`` = contact width / ``across``; unchanged if no contact carries load.
 
-    The width is the mean over all bumps of refined contacts in all strokes of the cycle, weighted by their load.
+    The width is the mean over all zones of refined contacts in all strokes of the cycle, weighted by their load.
     """
     accuracy, vector = stage.scene.accuracy, stage.problem.state.vec.FV().NumPy()
     keep, moment, load = vector.copy(), 0.0, 0.0
@@ -61,7 +61,7 @@ def with_contact_lengths(stage: Stage, phases: list[Array], across: float) -> Sc
         vector[:] = phase
         for spec in stage.scene.followed:
             profile = stage.contacts[spec.name].profile()
-            for zone in profile.bumps():
+            for zone in profile.zones():
                 borne = float(profile.load[zone.nodes].sum())
                 moment, load = moment + borne * zone.width, load + borne
     vector[:] = keep

@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 # These were settled on the rod seal, by its depth's error and its elements (adaptive_against_fixed.py), TURN besides on
 # an O-ring that could not be meshed with few elements: see the list in tests/benchmarks/README.md.
 FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
-NARROWEST = 0.5  # of the patch: elements of the narrowest zones
+NARROWEST = 0.125  # of the patch: elements of the narrowest bumps
 NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
 LEAST = 0.5  # of these: also where wear has not so much left to close
 TURN, WIDEST_TURN = 0.5, 0.7  # rad, of the outline between nodes off the contacts; with few elements across
@@ -139,13 +139,12 @@ def _beside(contour: Outline, t: Array, apart: float) -> Array:
 
 
 def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:
-    """Element edge at each node of a contact, by the width of the nearest bump, shape (k,) [mm]."""
-    if across is None or not (zones := profile.bumps()):
+    """Element edge at each node of a contact, by the bump's width at the nearest loaded one, shape (k,) [mm]."""
+    if across is None or not (widths := profile.bump_widths()).any():
         return np.full(len(profile.t), patch)
-    nodes = np.concatenate([zone.nodes for zone in zones])
-    edges = np.concatenate([np.full(len(zone.nodes), zone.width / across) for zone in zones])
-    nearest = np.abs(profile.t[:, None] - profile.t[nodes]).argmin(axis=1)
-    return np.clip(edges[nearest], NARROWEST * patch, patch)
+    loaded = np.flatnonzero(widths)
+    nearest = np.abs(profile.t[:, None] - profile.t[loaded]).argmin(axis=1)
+    return np.clip(widths[loaded][nearest] / across, NARROWEST * patch, patch)
 
 
 def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:
