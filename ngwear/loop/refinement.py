@@ -89,8 +89,8 @@ def contact_sizes(
 
     The size is ``patch`` where a refined contact carries load, where its gap is below ``reach`` times ``patch``, or
     where wear over a sliding distance of ``sliding`` [mm] may close the gap. The gap limit is smaller, down to half, if
-    the remaining sliding distance ``left`` [mm] wears less than ``NEAR`` times ``patch``. With ``across``, narrow zones
-    of a contact have smaller elements, this number across each, down to ``NARROWEST`` times ``patch``.
+    the remaining sliding distance ``left`` [mm] wears less than ``NEAR`` times ``patch``. With ``across``, narrow bumps
+    of pressure have smaller elements, this number across each, down to ``NARROWEST`` times ``patch``.
 
     Wear spreads a contact and lowers its pressures, so that the present wear rate is an upper bound of later ones.
 
