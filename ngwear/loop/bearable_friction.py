@@ -27,7 +27,9 @@ BELOW = 0.9  # of the most friction that the part bears: wear and a new mesh mov
 LOWER = (0.5, 0.25, 0.0)  # times the friction that it did not bear on the way there
 REVERSED = (1.0, 0.5, 0.25)  # times its own, before the other loads, if it fails while the friction still reverses
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
-NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched; less is none
+NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched,
+NEARER = 1 / 4  # and of what it did not bear on the way, if that is nearer
+LEAST = 1 / 64  # of its friction: a part that does not bear this bears none
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
 
 
@@ -45,7 +47,7 @@ def is_too_much(error: ConvergenceError) -> bool:
 def takes_less(stage: Stage, stroke: str, error: ConvergenceError) -> bool:
     """Lower the friction of a stroke for the next solve, if the part does not bear it any more; False if it is not."""
     share, _ = stage.friction_shares.get(stroke, (1.0, ""))
-    if not (stage.floats and stage.sliding and is_too_much(error)) or BELOW * share < NEAREST:
+    if not (stage.floats and stage.sliding and is_too_much(error)) or BELOW * share < LEAST:
         return False
     stage.friction_shares[stroke] = (BELOW * share, reason(error))
     log.info("stroke '%s': %.0f %% of the friction act", stroke, 100 * BELOW * share)
@@ -169,12 +171,12 @@ def lower_friction(
         if must_not is not None or not comes_on:
             raise error
         over = _never  # the squeeze alone wrinkles it
-    begun = goal
+    begun, step = goal, min(NEAREST, NEARER * reached) if reached > 0 else NEAREST
     while not over(problem):
         held = goal
         if held == 1.0:
             return work
-        goal = min(1.0, held + NEAREST)
+        goal = min(1.0, held + step)
         try:
             work.add(advance(problem, {name: goal * slip for name, slip in slips.items()}, StepOptions(smallest=1.0)))
         except ConvergenceError as nearer:  # the state is the last one with which it slides
@@ -184,7 +186,7 @@ def lower_friction(
     # A surface that has creased does not come back by itself: then from the beginning, at last by a way that was gone.
     ways = ((BELOW * held, False), (BELOW * held, True), (BELOW**2 * held, True), (begun, True))
     for share, from_start in ways:
-        if share * before < NEAREST:
+        if share * before < LEAST:
             raise error
         held, less = share, {name: share * slip for name, slip in slips.items()}
         try:

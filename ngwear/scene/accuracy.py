@@ -83,7 +83,8 @@ class Accuracy:
         with memory: the strain is constant in each part (``ngwear.loop.memory_over_cycles``).
     across : float or None
         Number of elements across a contact, mean by load, instead of lengths [-]. The run sets ``patch`` from the
-        contact width at each new mesh, for each zone of a contact, and the other lengths from the size of the section.
+        contact width at each new mesh, smaller for bumps of pressure narrower than the contact, such as lobes and the
+        peak at the end of a lip's contact, and the other lengths from the size of the section.
         Tolerances that are not given follow: ``stress_error`` with the square of the element edge; ``depth_error``,
         ``wear_error`` (up to 0.05) and ``longest_jump`` in proportion to the element edge.
     error : float or None

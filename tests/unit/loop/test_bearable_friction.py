@@ -136,6 +136,16 @@ def test_a_share_whose_loads_do_not_come_on_is_lowered_once_more(unlowered, monk
     assert unlowered.friction_shares["outward"] == (pytest.approx(share), bearable_friction.ROLLS)
 
 
+def test_a_part_that_bears_hardly_any_friction_slides_with_that(unlowered, monkeypatch):
+    tries(unlowered, monkeypatch, stroke="outward", reached=0.12, comes_on=lambda share, _: share <= 0.06)
+    assert unlowered.friction_shares["outward"] == (pytest.approx(BELOW * 0.06), bearable_friction.ROLLS)
+
+
+def test_a_part_that_bears_none_is_given_up(unlowered, monkeypatch):
+    with pytest.raises(ConvergenceError, match="rolls"):
+        tries(unlowered, monkeypatch, stroke="outward", reached=0.03, comes_on=lambda share, _: share <= 0.015)
+
+
 def test_at_last_it_goes_a_way_that_was_gone(unlowered, monkeypatch):
     """With a quarter of the friction the loads come on, with nothing else."""
     tried = tries(unlowered, monkeypatch, stroke="outward", reached=0.5, comes_on=lambda share, _: share == 0.25)
