@@ -58,7 +58,6 @@ def required_sizes(
         field,
         seeds=np.vstack([field.seeds, fine[:, :2]]),
         sizes=np.append(field.sizes, fine[:, 2]),
-        finest=field.sizes.min(initial=np.inf),
     )
 
 
@@ -119,7 +118,15 @@ def contact_sizes(
     ask, places = size < np.inf, np.vstack(fronts)
     seeds, sizes = np.vstack([contour.points[ask], places]), np.append(size[ask], np.full(len(places), lengths.patch))
     turn = TURN if across is None else min(TURN * max(1.0, FEW / across), WIDEST_TURN)
-    return SizeField(seeds, sizes, lengths.coarse, lengths.grading, elsewhere=turn, per_radius=_per_radius(across))
+    return SizeField(
+        seeds,
+        sizes,
+        lengths.coarse,
+        lengths.grading,
+        elsewhere=turn,
+        per_radius=_per_radius(across),
+        finest=lengths.patch,
+    )
 
 
 def _per_radius(across: float | None) -> float:
