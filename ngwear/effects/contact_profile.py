@@ -159,6 +159,15 @@ class ContactProfile:
         load = length * np.maximum(self.mean, 0.0)
         return float(load @ length / load.sum()) if load.any() else 0.0
 
+    @property
+    def shortest_edges(self) -> Array:
+        """Length of the shortest mesh edge at each node, shape (k,) [mm]."""
+        ends = self.reference[self.edges]
+        length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        shortest = np.full(len(self.t), np.inf)
+        np.minimum.at(shortest, self.edges, length[:, None])
+        return shortest
+
     def straight(self) -> ContactProfile:
         """The same profile with loads from the lumped pressures (same sum), and pressures linear between nodes."""
         load = self.nominal_pressure * self.weight

@@ -34,6 +34,7 @@ def required_sizes(
     phases: list[Array],
     *,
     across: float | None = None,
+    worn: bool = False,
     fine: Array | None = None,
     reach: float = NEAR,
     sliding: float = 0.0,
@@ -42,9 +43,10 @@ def required_sizes(
     """Required element sizes for the present states, one state for each stroke of the cycle.
 
     In the contacts those of ``contact_sizes``; elsewhere the size at which the error indicator of an element is its
-    share of ``Accuracy.stress_error``. ``fine``, shape (k, 3): places and sizes that solves have asked for.
+    share of ``Accuracy.stress_error``. ``worn`` as there. ``fine``, shape (k, 3): places and sizes that solves have
+    asked for.
     """
-    contacts = contact_sizes(stage, phases, across=across, reach=reach, sliding=sliding, left=left)
+    contacts = contact_sizes(stage, phases, across=across, worn=worn, reach=reach, sliding=sliding, left=left)
     places, sizes = _stress_sizes(stage, phases)
     heard = sizes < FINER * contacts(places)
     field = replace(
@@ -80,6 +82,7 @@ def contact_sizes(
     phases: list[Array],
     *,
     across: float | None = None,
+    worn: bool = False,
     reach: float = NEAR,
     sliding: float = 0.0,
     left: float = math.inf,
@@ -90,6 +93,8 @@ def contact_sizes(
     where wear over a sliding distance of ``sliding`` [mm] may close the gap. The gap limit is smaller, down to half, if
     the remaining sliding distance ``left`` [mm] wears less than ``NEAR`` times ``patch``. With ``across``, narrow bumps
     of pressure have smaller elements, this number across each, down to ``NARROWEST`` times ``patch``.
+    On an outline that has ``worn`` they have none smaller than now: it has points for these only, and between them
+    finer elements find peaks that are none.
 
     Wear spreads a contact and lowers its pressures, so that the present wear rate is an upper bound of later ones.
 
@@ -109,7 +114,7 @@ def contact_sizes(
             rate = spec.wear_rate.highest * wearing.max(initial=0.0)
             deepest = rate * left if rate > 0 else 0.0
             soon = reach * min(lengths.patch, max(LEAST * lengths.patch, deepest / NEAR)) + rate * sliding
-            patch = element_edges(profile, lengths.patch, across)
+            patch = element_edges(profile, lengths.patch, across, worn=worn)
             near = (pressure > 0) | (profile.gap < soon)
             ask = _spanned(contour, profile, near)
             size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
@@ -145,13 +150,17 @@ def _beside(contour: Outline, t: Array, apart: float) -> Array:
     return contour.at(np.interp(there.ravel() % ways[-1], ways, points))
 
 
-def element_edges(profile: ContactProfile, patch: float, across: float | None) -> Array:
-    """Element edge at each node of a contact, by the bump's width at the nearest loaded one, shape (k,) [mm]."""
+def element_edges(profile: ContactProfile, patch: float, across: float | None, *, worn: bool = False) -> Array:
+    """Element edge at each node of a contact, by the bump's width at the nearest loaded one, shape (k,) [mm].
+
+    ``worn`` as in ``contact_sizes``.
+    """
     if across is None or not (widths := profile.bump_widths()).any():
         return np.full(len(profile.t), patch)
     loaded = np.flatnonzero(widths)
     nearest = np.abs(profile.t[:, None] - profile.t[loaded]).argmin(axis=1)
-    return np.clip(widths[loaded][nearest] / across, NARROWEST * patch, patch)
+    least = np.minimum(profile.shortest_edges, patch) if worn else NARROWEST * patch
+    return np.clip(widths[loaded][nearest] / across, least, patch)
 
 
 def _stress_sizes(stage: Stage, phases: list[Array]) -> tuple[Array, Array]:

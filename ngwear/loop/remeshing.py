@@ -76,10 +76,11 @@ def remesh(
     if (scene is not None or state.across is not None) and state.ledger.worn == 0:
         contour = unworn_outline(old.scene)
     fine = state.fine if fine is None else fine
-    wanted = required_sizes(old, phases, across=state.across, fine=fine, **remaining_sliding(state))
+    worn = state.ledger.worn > 0
+    wanted = required_sizes(old, phases, across=state.across, worn=worn, fine=fine, **remaining_sliding(state))
     tidy = contour if state.depths is None else tidied(contour, wanted, float(state.depths[0].max()))
-    body = Body(tidy, wanted, on_chord=state.ledger.worn > 0)
-    jump = abs(body.base.area - contour.area) / contour.area if state.ledger.worn > 0 else 0.0
+    body = Body(tidy, wanted, on_chord=worn)
+    jump = abs(body.base.area - contour.area) / contour.area if worn else 0.0
     if jump > LARGEST_JUMP:
         raise MeshError(f"a new mesh would change the section's area by {jump:.1e}")
     stage = Stage(old.scene, body, state.background, old.friction_shares)
