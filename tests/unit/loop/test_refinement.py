@@ -128,6 +128,10 @@ def test_lobes_that_touch_and_a_peak_at_an_end_have_widths_of_their_own():
     assert sizes[[left, right]] == pytest.approx([0.3, 0.3], rel=0.06)
     assert sizes[valley] == pytest.approx(zone.width / 6, rel=0.05)
     assert sizes[peak] == pytest.approx(NARROWEST * zone.width / 6)
+    every = profile_of(x[::20], profile.pressure[::20])  # elements of 0.1 mm: a worn outline has points for no others
+    at = int(np.abs(every.place[:, 0] - 3.5).argmin())
+    assert element_edges(every, zone.width / 6, 40.0)[at] < 0.09
+    assert element_edges(every, zone.width / 6, 40.0, worn=True)[at] == pytest.approx(0.1)
 
 
 def test_the_element_edge_in_contact_is_the_mean_by_load():
