@@ -159,7 +159,7 @@ def element_edges(profile: ContactProfile, patch: float, across: float | None, *
         return np.full(len(profile.t), patch)
     loaded = np.flatnonzero(widths)
     nearest = np.abs(profile.t[:, None] - profile.t[loaded]).argmin(axis=1)
-    least = np.minimum(profile.shortest_edges, patch) if worn else NARROWEST * patch
+    least = np.clip(profile.shortest_edges, NARROWEST * patch, patch) if worn else NARROWEST * patch
     return np.clip(widths[loaded][nearest] / across, least, patch)
 
 
