@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 # These were settled on the rod seal, by its depth's error and its elements (adaptive_against_fixed.py), TURN besides on
 # an O-ring that could not be meshed with few elements: see the list in tests/benchmarks/README.md.
 FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
-NARROWEST = 0.125  # of the patch: elements of the narrowest bumps
+NARROWEST = 0.25  # of the patch: elements of the narrowest bumps
 NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
 LEAST = 0.5  # of these: also where wear has not so much left to close
 TURN, WIDEST_TURN = 0.5, 0.7  # rad, of the outline between nodes off the contacts; with few elements across
