@@ -1,11 +1,12 @@
 """Error by the mesh: a cycle is solved again on elements of half the edges, without wear.
 
 Coarser runs may all miss what the elements of none of them resolve, and then agree. The change of peak pressures, loads
-and widths with half the edges does not depend on them. First order is assumed: the error is twice that change. It is
-computed before the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how
-much of the largest wear per cycle is left at the end. That of the peak pressure counts whole: the peak may move to the
-end of the contact, where wear leaves an edge. A worn outline has points for its own elements only, so that finer ones
-show peaks that are none; it is used if there is no equilibrium on the finer ones before.
+and widths with half the edges does not depend on them. First order is assumed, with the factor of safety of grid
+convergence studies: the error is 2.5 times that change (Roache, J. Fluids Eng. 116 (1994) 405). It is computed before
+the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how much of the
+largest wear per cycle is left at the end. That of the peak pressure counts whole: the peak may move to the end of the
+contact, where wear leaves an edge. A worn outline has points for its own elements only, so that finer ones show peaks
+that are none; it is used if there is no equilibrium on the finer ones before.
 
 Only for parts with room to move, which are mounted on coarse elements.
 """
@@ -28,7 +29,7 @@ from ngwear.results.quantities_of_interest import BY_HALVED, DEPTH, PEAK
 from ngwear.results.richardson import relative_errors
 
 BY_PEAK = f"{PEAK[:-4]} {BY_HALVED}"
-REMAINS = 2.0  # of first order: the error over what halves change, 1 / (1 - 1/2)
+REMAINS = 1.25 * 2.0  # factor of safety, times the error of first order over what halves change, 1 / (1 - 1/2)
 log = logging.getLogger(__name__)
 
 
