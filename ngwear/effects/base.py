@@ -117,8 +117,11 @@ class Term(abc.ABC):
         """Hold the part at its present state with springs of this strength [-]; 0: none. True if the term can."""
         return False
 
-    def refresh(self) -> bool:
-        """After a solve, update the quantities that were fixed in it; True if another solve is necessary."""
+    def refresh(self, *, solved: bool = False) -> bool:
+        """Update the quantities that are fixed in a solve; True if another solve is necessary.
+
+        ``solved``: whether the state is an equilibrium that a solve with them has found, and not a guess of one.
+        """
         return False
 
     def commit(self, strain: Array) -> None:  # noqa: B027 - most terms have no memory

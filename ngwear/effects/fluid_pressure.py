@@ -90,7 +90,7 @@ class FluidPressure(EdgePressure):
             raise SceneError("fluid.inlet", list(self.inlet), f"must name some of the fluid's edges {list(self.edges)}")
         self.pressure = ng.Parameter(0.0)
         self.loads = {f"{name} pressure [MPa]": self.pressure}
-        self.leaks, self._solved, self._moves = False, False, 0
+        self.leaks, self._moves = False, 0
         self._before, self._change = np.empty(0), np.empty(0)
 
     def nominal(self) -> Any:
@@ -140,10 +140,11 @@ class FluidPressure(EdgePressure):
         """The fluid from another inlet that has this edge."""
         return next((other for other in self.others if edge in other.inlet), None)
 
-    def refresh(self) -> bool:
+    def refresh(self, *, solved: bool = False) -> bool:
         """Update the front; True if the change of load is above ``STAYS``.
 
-        Otherwise the front stays where it was, so that the state remains an equilibrium.
+        Otherwise the front stays where it was, so that the state remains an equilibrium. Only in a ``solved`` state the
+        fluid passes contacts: those of a guess say nothing of what they hold.
         """
         touching, outside, carried = self._contact()
         self._begin_in_the_open(touching)
@@ -154,7 +155,7 @@ class FluidPressure(EdgePressure):
         self._last = self.pressure.Get()
         if falls:
             self._passed, self._drained = [0, 0], [False, False]
-        elif self._solved:
+        elif solved:
             self._pass(touching, stops)
         for k, (step, path) in enumerate(self.paths):
             stop = np.flatnonzero(stops[k])
@@ -171,16 +172,15 @@ class FluidPressure(EdgePressure):
                 share[path[stop[0]]] = outside[path[stop[0]], 0 if step == 1 else 1]
         pressure = abs(self.pressure.Get())
         moved = pressure * float(self._lengths @ np.abs(self.shares - share)) > STAYS * carried
-        if self._solved:
+        if solved:
             self._moves = self._moves + 1 if moved else 0
-        if moved or not self._solved:
+        if moved or not solved:
             now = self.shares
             change = share - now
             if self._moves > SWINGS:
                 share = now + self._between(now, change)
             self._before, self._change = now, change
             self.on_edges = share
-        self._solved = False
         return moved
 
     def stops(self) -> list[np.ndarray]:
@@ -229,9 +229,6 @@ class FluidPressure(EdgePressure):
     def _yields(self, other: FluidPressure | None) -> bool:
         """Whether the fluid from another inlet, which this one meets, has the higher pressure."""
         return other is not None and (other.pressure.Get(), other.name) > (self.pressure.Get(), self.name)
-
-    def prepare(self) -> None:
-        self._solved = True
 
     def _pass(self, touching: np.ndarray, stops: list[np.ndarray]) -> None:
         """Let the fluid into contacts that it lifts: the next edges of ``_passed`` are those that hold it.

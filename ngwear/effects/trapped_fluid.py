@@ -41,7 +41,7 @@ class TrappedFluid(EdgePressure):
     ) -> None:
         super().__init__(edges)
         self.fluids, self.contacts = tuple(fluids), tuple(contacts)
-        self._solved, self._begins = False, True
+        self._begins = True
 
     def nominal(self) -> Any:
         return self.field
@@ -76,9 +76,9 @@ class TrappedFluid(EdgePressure):
         return np.max([fluid.pressure.Get() * fluid.shares for fluid in self.fluids], axis=0)
 
     def prepare(self) -> None:
-        self._solved, self._begins = True, False
+        self._begins = False
 
-    def refresh(self) -> bool:
+    def refresh(self, *, solved: bool = False) -> bool:
         q, carried = np.zeros(len(self._lengths)), 0.0
         wet = self._wet() > 0
         for pocket in pockets(self._body, self._unknowns.state[DISPLACEMENT], self.contacts):
@@ -88,13 +88,12 @@ class TrappedFluid(EdgePressure):
             q[edges] = self.left[edges].max()
             if self.pressures[edges].any() and not self._begins:  # else the contacts do not feel it yet
                 q[edges] = np.minimum(q[edges], pocket.holds / (1 - LESS))
-            if self._solved:
+            if solved:
                 self.left[edges] = q[edges]
-        if self._solved:
+        if solved:
             reached = np.max([fluid.shares for fluid in self.fluids], axis=0) > 0
             closed = contact_pressures(self._body, self.contacts).max(axis=0) > 0
             self.left = np.where(reached, self._wet(), np.where(closed, 0.0, self.left))
-        self._solved = False
         for contact in self.contacts:
             carried += float(self._lengths[contact.positions] @ contact.end_pressures().mean(axis=1))
         if self._lengths @ np.abs(q - self.pressures) <= STAYS * carried and not self._begins:

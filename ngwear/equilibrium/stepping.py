@@ -86,7 +86,7 @@ def settle(
                 return report
             return replace(report, outcome=Outcome.CONVERGED)
         last = updates == options.max_updates - 1  # what the terms have fixed stays as it was solved: an equilibrium
-        if not update or last or not any([term.refresh() for term in problem.terms]):
+        if not update or last or not any([term.refresh(solved=True) for term in problem.terms]):
             return report
     return report
 
