@@ -264,6 +264,12 @@ class FluidPressure(EdgePressure):
                 self._passed[k] = last
 
     @property
+    def passed_lengths(self) -> np.ndarray:
+        """Length of the mesh edges in contact that the fluid has passed, on each way, shape (2,) [mm]."""
+        length = np.where(self._contact()[0], self._lengths, 0.0)
+        return np.array([length[path[: self._passed[k]]].sum() for k, (_, path) in enumerate(self.paths)])
+
+    @property
     def passed(self) -> np.ndarray:
         """Reference places up to which the fluid has lifted contacts, one a way; nan: none; shape (2, 2) [mm]."""
         places = np.full((2, 2), np.nan)

@@ -16,6 +16,7 @@ from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settl
 from ngwear.errors import ConvergenceError
 from ngwear.loop.bearable_friction import takes_less
 from ngwear.loop.carried_state import HARDEST
+from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.scene.program import Stroke
 from ngwear.wear.cycle_jumps import Plan
@@ -26,6 +27,7 @@ log = logging.getLogger(__name__)
 
 EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is the pressure that a pocket keeps
 # Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
+FAR = 0.1  # of the section: how far a fluid passes contacts in one solve on a new mesh, before steps are taken
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
 
@@ -59,7 +61,8 @@ def solve_stroke(
         guesses = []  # on a new mesh a way that needed steps needs them again
     reports = (_solves(state, guess, work) for guess in guesses)
     last = None
-    if not any((last := report).converged for report in reports):
+    solved = any((last := report).converged for report in reports)
+    if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
         if at_once and last is not None:
             raise ConvergenceError(f"the {stroke.name} stroke needs load steps", last)
         starts = bool(stage.floats) and repeats == 0 and state.strokes == 0
@@ -79,6 +82,20 @@ def solve_stroke(
         left=stage.fluid_left(),
     )
     return work.iterations
+
+
+def _passes_far(stage: Stage, before: Array | None) -> bool:
+    """Whether a fluid has passed a share (``FAR``) of the section more of the contacts than ``before``.
+
+    On a new mesh, with all of its pressure at once, it may pass contacts that hold it if the pressure rises in steps.
+    """
+    now = stage.fluid_passed()
+    if now is None:
+        return False
+    lengths = np.array([fluid.passed_lengths for fluid in stage.fluids.values()])
+    apart = np.full(lengths.shape, np.nan) if before is None else np.linalg.norm(now - before, axis=-1)
+    farther = np.where(np.isnan(apart), lengths, np.minimum(apart, lengths))
+    return bool((farther > FAR * stage.body.size).any())
 
 
 def _begin(state: State, index: int, stroke: Stroke, sliding: Strokes, plan: Plan) -> None:
@@ -242,18 +259,20 @@ def _follow(
     _begin_path(state, index)
     target, loads = state.stage.stroke_loads(stroke), problem.get_loads()
     path: list[tuple[float, Array]] = []
-    reached = 0.0
+    reached, carried = 0.0, bool(state.stage.floats) and state.phases[index].shares is None
 
     def at(fraction: float) -> dict[str, float]:
         return {name: loads[name] + fraction * (end - loads[name]) for name, end in target.items()}
 
     def solves(step: int) -> bool:
+        state.stage.let_fluid_pass(passed)
         problem.set_loads(at(known[step][0]))
-        return _solves(state, known[step][1], work).converged
+        solved = _solves(state, known[step][1], work).converged
+        return solved and not (carried and _passes_far(state.stage, state.phases[index].passed))
 
     here = 0
     while here < len(known):
-        begin = problem.state.vec.FV().NumPy().copy()
+        begin, passed = problem.state.vec.FV().NumPy().copy(), state.stage.fluid_passed()
         step = here + 1 if not fewest and (len(known) - here) % 2 == 0 else here
         solved = solves(step)
         if not solved and step > here:
@@ -266,6 +285,7 @@ def _follow(
         else:
             _set_guess(state, begin)
             problem.set_loads(at(reached))
+            state.stage.let_fluid_pass(passed)
             for term in problem.terms:
                 term.refresh()
             steps: list[tuple[float, Array]] = []
