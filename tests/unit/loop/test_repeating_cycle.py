@@ -14,7 +14,7 @@ from ngwear.loop.stroke_solve import pass_stroke
 @pytest.fixture(scope="module")
 def sticking(ring):
     """The O-ring with friction at which it sticks to the groove, for twenty cycles."""
-    contacts = [replace(spec, friction=0.15 if spec.slides else 0.4) for spec in ring.contacts]
+    contacts = [replace(spec, friction=0.1 if spec.slides else 0.4) for spec in ring.contacts]
     return replace(ring, contacts=contacts, program=replace(ring.program, strokes=40))
 
 
