@@ -217,7 +217,7 @@ class _LevelSummary:
 
 
 def _by_mesh_and_steps(estimated: Mapping[str, float], name: str) -> float | None:
-    """An estimated error without the parts that no finer level lowers."""
+    """An estimated error without the parts for which no finer level is chosen."""
     total = estimated.get(name)
     return None if total is None else total - sum(estimated.get(f"{name[:-4]} {part}", 0.0) for part in APART)
 

@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
 
 EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is the pressure that a pocket keeps
-# Settled on the torn seal: the list in tests/benchmarks/README.md says by which command.
+# Settled on the shipped O-ring and the torn seal: the list in tests/benchmarks/README.md says by which command.
 FAR = 0.1  # of the section: how far a fluid passes contacts in one solve on a new mesh, before steps are taken
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
