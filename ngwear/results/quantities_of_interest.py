@@ -25,7 +25,7 @@ BY_TIME_STEP = "by the time step [-]"  # ending of a name: part of the error of 
 BY_HALVED = "by halved elements [-]"  # the same: what elements of half the edges say of the mesh alone
 BY_FRICTION = "by friction left out [-]"  # the same: what friction would change that the part does not bear
 BY_FLUID = "by fluid let in [-]"  # the same: what a fluid would change that a contact just holds
-APART = (BY_FRICTION, BY_FLUID)  # parts beside those by mesh and steps: they are added, and no finer level is chosen for them
+APART = (BY_FRICTION, BY_FLUID)  # parts that are added, and for which no finer level is chosen
 # The last half of the run was chosen on the filled seal (``verify error_estimates``); 17 strokes average out scatter.
 PLACES = 17  # number of strokes in the last half of the run at which histories are compared
 
