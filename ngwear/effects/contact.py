@@ -185,7 +185,7 @@ class OutlineContact(UnilateralContact):
     def profile(self) -> ContactProfile:
         """Pressures, places and gaps at the mesh nodes of the named edges, in the order of the outline."""
         u = self._state[DISPLACEMENT]
-        stretch = self._kinematics.area_stretch(u, ng.Grad(u))
+        stretch, gap = self._kinematics.area_stretch(u, ng.Grad(u)), self.gap(self._state)
         return ContactProfile.from_samples(
             self.nodes,
             self.section.contour,
@@ -193,7 +193,8 @@ class OutlineContact(UnilateralContact):
             pressure=self.end_pressures(),
             stretch=self._sample(stretch),
             place=np.stack([self._sample(ng.x + u[0]), self._sample(ng.y + u[1])], axis=-1),
-            gap=self._sample(self.gap(self._state)),
+            gap=self._sample(gap),
+            middle_gap=self.sample_middles(gap),
             nodal=self.order == 1,
         )
 

@@ -107,6 +107,8 @@ class ContactProfile:
         The two nodes of each mesh edge.
     mean : array, shape (m,)
         Mean nominal pressure of each mesh edge [MPa].
+    standing_off : array, shape (m,)
+        Gap in the middle of each mesh edge, less the mean of those at its ends [mm]; 0 for nodal pressures.
     """
 
     t: Array
@@ -119,6 +121,7 @@ class ContactProfile:
     load: Array
     edges: NDArray[np.intp]
     mean: Array
+    standing_off: Array
 
     @classmethod
     def from_samples(
@@ -131,11 +134,13 @@ class ContactProfile:
         stretch: Array,
         place: Array,
         gap: Array,
+        middle_gap: Array,
         nodal: bool = False,
     ) -> ContactProfile:
         """Build from lengths of the mesh edges, shape (m,) [mm], and samples at both ends of each.
 
-        The samples are of shape (m, 2), ``place`` of shape (m, 2, 2); ``nodal`` as of ``nodal_pressure``.
+        The samples are of shape (m, 2), ``place`` of shape (m, 2, 2), ``middle_gap`` of shape (m,); ``nodal`` as of
+        ``nodal_pressure``.
         """
         nominal, load, weight = nodal_pressure(nodes, lengths, pressure, nodal=nodal)
         return cls(
@@ -149,6 +154,7 @@ class ContactProfile:
             load=load,
             edges=nodes.of_edges,
             mean=pressure.mean(axis=1),
+            standing_off=np.zeros(len(gap)) if nodal else middle_gap - gap.mean(axis=1),
         )
 
     @property
@@ -240,8 +246,11 @@ class ContactProfile:
     def _from(self, first: int) -> ContactProfile:
         """The same profile with another first node."""
         k = len(self.t)
-        values = {f.name: np.roll(getattr(self, f.name), -first, axis=0) for f in fields(self)}
-        return replace(self, **(values | {"edges": (self.edges - first) % k, "mean": self.mean}))
+        of_edges = ("edges", "mean", "standing_off")
+        values = {
+            f.name: np.roll(getattr(self, f.name), -first, axis=0) for f in fields(self) if f.name not in of_edges
+        }
+        return replace(self, edges=(self.edges - first) % k, **values)
 
     def _zone(self, a: int, b: int) -> Zone:
         (start, before), (end, beyond) = self._edge(a, -1), self._edge(b - 1, 1)

@@ -29,7 +29,7 @@ class SizeField:
     finest : float or None
         Up to which edge it is finest [mm]; default the smallest of ``sizes``.
     per_radius : float
-        Element edges over the outline's radius of curvature, at least [-].
+        Element edges over the outline's radius of curvature, at least [-]; 0 for none.
     """
 
     seeds: Array

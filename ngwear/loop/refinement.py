@@ -93,8 +93,8 @@ def contact_sizes(
     where wear over a sliding distance of ``sliding`` [mm] may close the gap. The gap limit is smaller, down to half, if
     the remaining sliding distance ``left`` [mm] wears less than ``NEAR`` times ``patch``. With ``across``, narrow bumps
     of pressure have smaller elements, this number across each, down to ``NARROWEST`` times ``patch``.
-    On an outline that has ``worn`` they have none smaller than now: it has points for these only, and between them
-    finer elements find peaks that are none.
+    On an outline that has ``worn`` they have none smaller than now, and none smaller for the outline's curvature: it
+    has points for these only, and between them finer elements find peaks that are none.
 
     Wear spreads a contact and lowers its pressures, so that the present wear rate is an upper bound of later ones.
 
@@ -129,7 +129,7 @@ def contact_sizes(
         lengths.coarse,
         lengths.grading,
         elsewhere=turn,
-        per_radius=_per_radius(across),
+        per_radius=0.0 if worn else _per_radius(across),
         finest=lengths.patch,
     )
 

@@ -20,6 +20,7 @@ from ngwear.scene.contact import Contact
 from ngwear.wear.archard import worn_share
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
 from ngwear.wear.sliding_distance import Strokes
+from ngwear.wear.within_edges import evened
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -222,7 +223,7 @@ class WearStep:
                 before = last.area[k] / (last.mean[k] * width).sum()
             area = (self.end_weight[k] * ways[k] * mine + before * self.last_depth[k]) * width
             whole[k] = area.sum() / ways[k]
-            share += area
+            share += evened(halfway, profile, area)
             pressure[k], mean[k] = mine, area / ways[k] / width
             if last is not None:
                 difference = area / width - 0.5 * ways[k] * (before * last.pressure[k] + mine)

@@ -72,6 +72,7 @@ def test_narrow_zones_have_elements_of_their_own():
         load=0.1 * loaded,
         edges=np.stack([np.arange(11), np.arange(1, 12)], axis=1),
         mean=0.5 * (1.0 * loaded[1:] + loaded[:-1]),
+        standing_off=np.zeros(11),
     )
     assert len(profile.zones()) == 3
     widths = profile.bump_widths()[[2, 6, 10]]
@@ -100,6 +101,7 @@ def profile_of(x, pressure):
         load=(x[1] - x[0]) * pressure,
         edges=np.stack([np.arange(k - 1), np.arange(1, k)], axis=1),
         mean=0.5 * (pressure[1:] + pressure[:-1]),
+        standing_off=np.zeros(k - 1),
     )
 
 
@@ -139,7 +141,7 @@ def test_the_element_edge_in_contact_is_the_mean_by_load():
     values = dict.fromkeys(("nominal_pressure", "pressure", "gap", "weight", "load"), np.zeros(4))
     edges, t = np.array([[0, 1], [1, 2], [2, 3]]), np.arange(4.0)
     profile = ContactProfile(
-        t=t, reference=place, place=2 * place, edges=edges, mean=np.array([3.0, 1.0, -1.0]), **values
+        t=t, reference=place, place=2 * place, edges=edges, mean=np.array([3.0, 1.0, -1.0]), standing_off=np.zeros(3), **values
     )
     assert profile.element_edge == pytest.approx((0.3 * 0.1 + 0.2 * 0.2) / 0.5)
     assert replace(profile, mean=np.zeros(3)).element_edge == 0.0

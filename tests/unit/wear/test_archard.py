@@ -25,6 +25,7 @@ def profile(t, depth, lengths):
         load=depth * weight,
         edges=edges,
         mean=depth[edges].mean(axis=1),
+        standing_off=np.zeros(len(edges)),
     )
     return made, depth * weight
 
