@@ -141,7 +141,13 @@ def test_the_element_edge_in_contact_is_the_mean_by_load():
     values = dict.fromkeys(("nominal_pressure", "pressure", "gap", "weight", "load"), np.zeros(4))
     edges, t = np.array([[0, 1], [1, 2], [2, 3]]), np.arange(4.0)
     profile = ContactProfile(
-        t=t, reference=place, place=2 * place, edges=edges, mean=np.array([3.0, 1.0, -1.0]), standing_off=np.zeros(3), **values
+        t=t,
+        reference=place,
+        place=2 * place,
+        edges=edges,
+        mean=np.array([3.0, 1.0, -1.0]),
+        standing_off=np.zeros(3),
+        **values,
     )
     assert profile.element_edge == pytest.approx((0.3 * 0.1 + 0.2 * 0.2) / 0.5)
     assert replace(profile, mean=np.zeros(3)).element_edge == 0.0
