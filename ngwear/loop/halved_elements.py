@@ -6,14 +6,13 @@ convergence studies: the error is 2.5 times that change (Roache, J. Fluids Eng. 
 the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how much of the
 largest wear per cycle is left at the end. That of the peak pressure counts whole: the peak may move to the end of the
 contact, where wear leaves an edge. A worn outline has points for its own elements only, so that finer ones show peaks
-that are none; it is used if there is no equilibrium on the finer ones before.
+that are none; it is used if there is no equilibrium on the finer ones before, not even after mounting on them.
 
 Only for parts with room to move, which are mounted on coarse elements.
 """
 
 from __future__ import annotations
 
-import logging
 from copy import copy
 from dataclasses import replace
 
@@ -30,28 +29,30 @@ from ngwear.results.richardson import relative_errors
 
 BY_PEAK = f"{PEAK[:-4]} {BY_HALVED}"
 REMAINS = 1.25 * 2.0  # factor of safety, times the error of first order over what halves change, 1 / (1 - 1/2)
-log = logging.getLogger(__name__)
 
 
-def add_mesh_errors(state: State) -> None:
+def add_mesh_errors(state: State) -> list[str]:
     """Store the relative errors by the mesh in the present state in ``State.mesh_errors``, unless they are known.
 
     They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; the error
-    of the depth is that of the largest wear per cycle. Not for a part that is held, or rubber with memory;
-    none where its states do not settle on the finer elements: to mount it there may take longer than the run.
+    of the depth is that of the largest wear per cycle. Not for a part that is held, or rubber with memory. Returns a
+    warning if there is no equilibrium on the finer elements.
     """
     if state.mesh_errors or state.memory is not None or not remeshes(state):
-        return
+        return []
     try:
         mine, other = read_cycle(next_cycle(state) if state.strokes else state), read_cycle(_on_halved(state))
     except (ConvergenceError, GeometryError, MeshError) as error:
-        log.info("the error by the mesh is not known: %s", error)
-        return
+        return [
+            "elements of half the edges do not tell the error by the mesh, only coarser ones do: "
+            f"{error}; compare with a finer accuracy"
+        ]
     finally:
         Stepper(state.stage.scene).restore_last_stroke(state)
     changes = relative_errors(mine, other)
     state.mesh_errors = {f"{name[:-4]} {BY_HALVED}": REMAINS * change for name, change in changes.items()}
     state.first_wear = _largest_wear(mine)
+    return []
 
 
 def faded(state: State) -> dict[str, float]:
@@ -75,5 +76,5 @@ def _on_halved(state: State) -> State:
     there.work, there.ledger = copy(state.work), state.ledger.copy()
     there.phases = [replace(phase) for phase in state.phases]
     refine_everywhere(there)
-    Stepper(state.stage.scene).settle_on_new_mesh(there, anew=False)
+    Stepper(state.stage.scene).settle_on_new_mesh(there)
     return there

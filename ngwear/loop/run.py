@@ -128,7 +128,7 @@ def run(
     by_time_step, warnings = _by_time_step(state) if state is not None and error is None else ({}, [])
     apart: dict[str, float] = {}
     if state is not None and error is None and errors is not None:
-        add_mesh_errors(state)
+        warnings += add_mesh_errors(state)
         apart, says = _that_stand_apart(state)
         warnings += says
     recorder.wall, recorder.cpu = time.perf_counter() - wall, time.process_time() - cpu

@@ -10,7 +10,7 @@ from ngwear.geometry.outline import Outline
 
 Array = NDArray[np.float64]
 
-MOST = 0.5  # of its own wear: what a point gives; settled on a worn U-cup, see tests/benchmarks/README.md
+MOST = 1 / 3  # of the difference in depth: what an end gains; both may, and then none becomes the deeper one
 SAME = 1e-9  # of a segment: a node so near to a point of the outline is on it
 
 
@@ -21,7 +21,8 @@ def evened(contour: Outline, profile: ContactProfile, share: Array) -> Array:
     ``s (4 x (1 - x) - 2/3)``, x from 0 to 1 along the edge, has neither: the middle stands off, both ends are in the
     surface, and no pressure tells of it. It comes about where a worn contact ends in a corner: the node there belongs
     to an edge out of contact, too, and lags behind. Finer elements of a later mesh would find a ridge, and a spike of
-    pressure. So the ends wear deeper by ``2/3 s``, and the points between them less.
+    pressure. So the ends wear deeper by ``2/3 s``, and the points between them less. No end
+    becomes the deeper one: what stands off for another reason stays.
 
     Parameters
     ----------
@@ -33,21 +34,26 @@ def evened(contour: Outline, profile: ContactProfile, share: Array) -> Array:
     Returns
     -------
     array, shape (n,)
-        The same sum; no point gives more than ``MOST`` of its own.
+        The same sum.
     """
-    n, half = len(contour), 0.5 * contour.lengths
-    flow = np.zeros(n)
-    for k in np.flatnonzero((profile.mean > 0) & (profile.standing_off > 0)):
-        a, b = profile.t[profile.edges[k]]
+    n, half, width = len(contour), 0.5 * contour.lengths, contour.widths()
+    depth, flow = share / width, np.zeros(n)
+    standing = np.flatnonzero((profile.mean > 0) & (profile.standing_off > 0))
+    givers = np.bincount(profile.edges[standing].ravel(), minlength=len(profile.t))
+    for k in standing:
+        nodes = profile.edges[k]
+        a, b = profile.t[nodes]
         b = b if b > a else b + n
         between = np.arange(np.floor(a + SAME) + 1, np.ceil(b - SAME)).astype(int) % n
-        ends = [(round(t), beside) for t, beside in ((a, 0), (b, -1)) if abs(t - round(t)) < SAME]
-        wanted = {t % n: 2 / 3 * profile.standing_off[k] * half[(t + beside) % n] for t, beside in ends}
-        most, asked = MOST * share[between].sum(), sum(wanted.values())
-        if most == 0 or asked == 0:
+        given, long = share[between].sum(), width[between].sum()
+        if given == 0:
             continue
-        moved = min(1.0, most / asked)
-        for t, area in wanted.items():
-            flow[t] += moved * area
-        flow[between] -= moved * asked * share[between] / share[between].sum()
+        for t, beside, giving in ((a, 0, givers[nodes[0]]), (b, -1, givers[nodes[1]])):
+            end = round(t) % n
+            shallower = given / long - depth[end]
+            if abs(t - round(t)) < SAME and shallower > 0:
+                wanted = 2 / 3 * profile.standing_off[k] * half[(end + beside) % n]
+                moved = min(wanted, MOST * shallower * min(width[end] / giving, long))
+                flow[end] += moved
+                flow[between] -= moved * share[between] / given
     return share + flow

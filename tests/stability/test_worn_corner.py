@@ -38,4 +38,4 @@ def test_finer_elements_find_no_ridge_at_the_end_of_a_worn_contact(strokes):
     coarse = peaks(state)
     refine_everywhere(state)
     stepper.settle_on_new_mesh(state)
-    assert max(peaks(state)) < 1.7 * max(coarse)
+    assert max(peaks(state)) < 2.0 * max(coarse)

@@ -88,6 +88,16 @@ def test_without_an_equilibrium_on_them_they_are_tried_again_at_the_end(ring, mo
     assert summary["error estimates"][BY_DEPTH] > 0
 
 
+def test_without_any_equilibrium_on_them_the_run_warns(ring, monkeypatch):
+    def fails(state):
+        raise ConvergenceError("no equilibrium")
+
+    monkeypatch.setattr(halved_elements, "_on_halved", fails)
+    summary = run(ring, progress=False, errors=lambda recorder, summary: None).summary
+    assert BY_DEPTH not in summary["error estimates"]
+    assert [w for w in summary["warnings"] if w.startswith("elements of half the edges do not tell")]
+
+
 def test_a_run_that_states_no_errors_does_not_look(ring, monkeypatch):
     monkeypatch.setattr(halved_elements, "_on_halved", None)
     assert BY_DEPTH not in run(ring, progress=False).summary["error estimates"]
