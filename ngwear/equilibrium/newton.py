@@ -20,7 +20,7 @@ class Outcome(enum.Enum):
 
     CONVERGED = "converged"
     TOO_MANY_ITERATIONS = "no convergence: take smaller load steps"
-    FOLDED = "an element would turn inside out: take smaller load steps or refine there"
+    FOLDED = "an element{at} would turn inside out: take smaller load steps or refine there"
     SINGULAR = "the tangent is singular: is the body held, and does every force-controlled surface touch it?"
     STALLED = "the corrections do not shrink: take smaller load steps"
     ROLLED = "the part rolls over on the way to another equilibrium"
@@ -73,7 +73,7 @@ class NewtonOptions:
 
 @dataclass
 class Report:
-    """Report of a solve."""
+    """Report of a solve; ``place`` is where an element would turn inside out, in the undeformed section [mm]."""
 
     outcome: Outcome
     iterations: int = 0
@@ -81,6 +81,7 @@ class Report:
     residual: float = math.nan
     linear_residual: float = 0.0
     rounded: bool = False  # whether it went by rounded laws, which takes many iterations but bears large steps
+    place: tuple[float, ...] = ()
 
     @property
     def converged(self) -> bool:
@@ -89,7 +90,9 @@ class Report:
 
     def __str__(self) -> str:
         steps = " ".join(f"{c:.1e}" for c in self.corrections[-8:])
-        return f"{self.outcome.value} (iterations {self.iterations}; last displacement corrections [mm] {steps})"
+        at = f" at ({', '.join(f'{x:.4g}' for x in self.place)}) of the undeformed section" if self.place else ""
+        ended = self.outcome.value.format(at=at)
+        return f"{ended} (iterations {self.iterations}; last displacement corrections [mm] {steps})"
 
 
 def iterate(problem: Problem, options: NewtonOptions) -> Report:
@@ -135,7 +138,7 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
                 break
             step /= 2
         else:
-            report.outcome = Outcome.FOLDED
+            report.outcome, report.place = Outcome.FOLDED, problem.most_squeezed()
             break
         if damps:
             step = _damped(problem, solver, correction, trial, step, residual)

@@ -228,6 +228,12 @@ class Problem:
         least: Array = (((1 + xx) * (1 + yy) - xy * yx) * (1 + hoop)).min(axis=1)
         return least
 
+    def most_squeezed(self) -> tuple[float, ...]:
+        """Centre of the element of least J in the present state [mm]; empty if no term acts inside the part."""
+        if self._points is None:
+            return ()
+        return tuple(map(float, self.points.centres[self.jacobians().argmin()]))
+
     def turned(self) -> float:
         """Angle by which the section has turned in the present state, counter-clockwise [degrees].
 

@@ -9,7 +9,7 @@ from ngwear.effects.elasticity import Elasticity
 from ngwear.effects.friction import FullSliding
 from ngwear.equilibrium.attempts import solve
 from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE, DirectSolver
-from ngwear.equilibrium.newton import NewtonOptions, Outcome
+from ngwear.equilibrium.newton import NewtonOptions, Outcome, iterate
 from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.equilibrium.stepping import StepOptions, advance
 from ngwear.errors import ConvergenceError, SceneError
@@ -198,6 +198,16 @@ def test_folded_first_guess_is_reported(rectangle):
     problem.fields[DISPLACEMENT].Set((0, -1.5 * ng.y))
     report = solve(problem)
     assert report.outcome is Outcome.BAD_START
+
+
+def test_an_element_that_would_turn_inside_out_is_said_with_its_place(rectangle):
+    problem, _ = pressed(rectangle)
+    problem.set_loads({"lid approach [mm]": 2.0})
+    report = iterate(problem, NewtonOptions())
+    assert report.outcome is Outcome.FOLDED
+    x, y = report.place
+    assert f"an element at ({x:.4g}, {y:.4g}) of the undeformed section would turn inside out" in str(report)
+    assert [x, y] in problem.points.centres.tolist()
 
 
 def test_newton_converges_quadratically(rectangle):
