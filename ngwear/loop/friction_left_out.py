@@ -2,7 +2,8 @@
 
 A part that does not bear its friction is solved with a share s of it (``ngwear.loop.bearable_friction``). On other
 elements, or worn, it bears another share. What the rest of the friction would change is extrapolated from what a little
-less of it does: if a quantity changes by d with 0.9 s, it changes by about d (1 - s) / (0.1 s) with all of it.
+less of it does: if a quantity changes by d with 0.9 s, it changes by about d (1 - s) / (0.1 s) with all of it. With all
+of the friction another place may be the deepest one.
 """
 
 from __future__ import annotations
@@ -10,11 +11,11 @@ from __future__ import annotations
 from copy import copy
 
 from ngwear.loop.bearable_friction import BELOW
-from ngwear.loop.cycle_quantities import read_cycle
+from ngwear.loop.cycle_quantities import read_cycle, wear_per_stroke
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.time_step_error import next_cycle
-from ngwear.results.quantities_of_interest import BY_FRICTION
+from ngwear.results.quantities_of_interest import BY_FRICTION, DEPTH
 from ngwear.results.richardson import relative_errors
 
 LESS = BELOW  # times the share that acts: so near to what the part bears is known
@@ -39,8 +40,28 @@ def friction_errors(state: State) -> dict[str, float]:
     there.stage = copy(state.stage)
     there.stage.friction_shares = acts | {stroke: (LESS * share, acts[stroke][1]) for stroke, share in lowered.items()}
     try:
-        mine, other = (read_cycle(next_cycle(at)) for at in (state, there))
+        mine, other = next_cycle(state), next_cycle(there)
     finally:
         Stepper(state.stage.scene).restore_last_stroke(state)
     left_out = max((1 - share) / ((1 - LESS) * share) for share in lowered.values())
-    return {f"{name[:-4]} {BY_FRICTION}": left_out * change for name, change in relative_errors(mine, other).items()}
+    changes = relative_errors(read_cycle(mine), read_cycle(other))
+    errors = {name: left_out * change for name, change in changes.items()}
+    if DEPTH in errors:
+        errors[DEPTH] = max(errors[DEPTH], _deeper(mine, other, left_out))
+    return {f"{name[:-4]} {BY_FRICTION}": error for name, error in errors.items()}
+
+
+def _deeper(mine: State, other: State, left_out: float) -> float:
+    """Relative change of the largest wear per cycle if it comes to lie where one of the strokes wears most.
+
+    The most that a stroke wears is extrapolated; the other strokes wear there what they do now.
+    """
+    changes = [0.0]
+    for spec in (spec for spec in mine.stage.scene.contacts if spec.wears):
+        wear, less = (wear_per_stroke(state, spec.name) for state in (mine, other))
+        largest = wear.sum(axis=0).max()
+        for stroke, lower in zip(wear, less, strict=True):
+            more = left_out * (stroke.max() - lower.max())
+            if largest > 0:
+                changes.append(float((wear[:, stroke.argmax()].sum() + more) / largest - 1))
+    return max(changes)

@@ -126,7 +126,7 @@ def test_the_error_by_a_fluid_that_is_just_held_is_what_it_changes_if_let_in(cup
 def test_a_run_states_it_or_says_that_it_is_not_known(ring, monkeypatch):
     from ngwear.loop import run as module
 
-    monkeypatch.setattr(module, "add_mesh_errors", lambda state: None)
+    monkeypatch.setattr(module, "add_mesh_errors", lambda state: [])
     by_fluid = f"{DEPTH[:-4]} {BY_FLUID}"
     monkeypatch.setattr(module, "fluid_errors", lambda state: {by_fluid: 0.4})
     assert run(ring, errors=lambda recorder, summary: None).summary["error estimates"][by_fluid] == 0.4

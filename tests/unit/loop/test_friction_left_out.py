@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from ngwear.error_estimates.stated_errors import LARGE, state_errors, with_parts
@@ -31,6 +32,16 @@ def sliding(ring):
     """State of a ring that bears its friction, but is solved with a share of it."""
     rubs = replace(ring, contacts=tuple(replace(c, friction=0.15 if c.slides else 0.4) for c in ring.contacts))
     return with_share(Stepper(rubs).start(), SHARE)
+
+
+def test_the_deepest_place_may_be_another_one_with_all_of_the_friction(sliding, monkeypatch):
+    """At the second node the inward stroke wears 7, and 12 if ten times the change from 6.5 comes on: 14 instead of 10."""
+    wear = {1: np.array([[10.0, 2.0], [0.0, 7.0]]), 2: np.array([[10.0, 2.0], [0.0, 6.5]])}
+    states = {k: replace(sliding, strokes=k) for k in wear}
+    monkeypatch.setattr(friction_left_out, "wear_per_stroke", lambda state, name: wear[state.strokes])
+    assert friction_left_out._deeper(states[1], states[2], 10.0) == pytest.approx(0.4)
+    wear[2] = 1.01 * wear[1]
+    assert friction_left_out._deeper(states[1], states[2], 10.0) == 0.0
 
 
 def test_they_are_what_the_rest_of_the_friction_changes(sliding):
@@ -64,7 +75,7 @@ def test_a_run_states_them_or_says_that_they_are_not_known(ring, monkeypatch):
     def states(recorder, summary):
         state_errors(summary, summary["error estimates"] | with_parts(summary["error estimates"]))
 
-    monkeypatch.setattr(module, "add_mesh_errors", lambda state: None)
+    monkeypatch.setattr(module, "add_mesh_errors", lambda state: [])
     monkeypatch.setattr(module, "friction_errors", lambda state: {BY_DEPTH: 0.4})
     told = run(ring, errors=states).summary
     assert told["error estimates"][DEPTH] >= told["error estimates"][BY_DEPTH] == 0.4
