@@ -35,7 +35,7 @@ def sliding(ring):
 
 
 def test_the_deepest_place_may_be_another_one_with_all_of_the_friction(sliding, monkeypatch):
-    """At the second node the inward stroke wears 7, and 12 if ten times the change from 6.5 comes on: 14 instead of 10."""
+    """At the second node the inward stroke wears 7, or 12 with ten times the change from 6.5: 14 instead of 10."""
     wear = {1: np.array([[10.0, 2.0], [0.0, 7.0]]), 2: np.array([[10.0, 2.0], [0.0, 6.5]])}
     states = {k: replace(sliding, strokes=k) for k in wear}
     monkeypatch.setattr(friction_left_out, "wear_per_stroke", lambda state, name: wear[state.strokes])
