@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import SceneError, require
+from ngwear.scene.holding import free_directions
 from ngwear.surfaces import Plane
 
 if TYPE_CHECKING:
@@ -55,10 +56,19 @@ def refuse_without_room(scene: Any) -> None:
 
 
 def refuse_fluids(scene: Any) -> None:
-    """SceneError if no fluid reaches an inlet, or two inlets with unlike pressures touch; ``Scene`` calls this."""
-    contour = scene.part.outline
+    """SceneError if no fluid reaches an inlet, or two inlets with unlike pressures touch; ``Scene`` calls this.
+
+    So is an inlet in several pieces of a part with room to move: a fluid goes on from one piece only.
+    """
+    contour, floats = scene.part.outline, bool(free_directions(scene))
     for name, edges in scene.fluid.inlets.items():
         mine = contour.on(tuple(edges))
+        pieces = int(np.count_nonzero(mine & ~np.roll(mine, 1)))
+        remedy = (
+            f"lies in {pieces} pieces, and a fluid goes on from one: name the edges between them, too, or give each "
+            'piece an inlet of its own, as in inlet = { "left" = ["..."], "right" = ["..."] }'
+        )
+        require(pieces <= 1 or not floats, _place(name), list(edges), remedy)
         x, y = contour.points[mine | np.roll(mine, 1)].T
         for contact in scene.contacts:
             remedy = (

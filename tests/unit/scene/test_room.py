@@ -63,6 +63,17 @@ def test_an_inlet_inside_a_surface_is_refused():
     assert refused.value.place == "fluid.inlet"
 
 
+def test_an_inlet_in_two_pieces_is_refused_if_the_part_has_room_to_move(ring):
+    """From the second piece the fluid did not go on, and pressed on the wall where the ring touched it."""
+    with pytest.raises(nw.SceneError, match="lies in 2 pieces, and a fluid goes on from one") as refused:
+        replace(ring, fluid=replace(ring.fluid, inlet=["sealed side", "air side"]))
+    assert refused.value.place == "fluid.inlet"
+    replace(ring, fluid=replace(ring.fluid, inlet=["sealed side", "groove side"]))
+    cycle = [replace(stroke, pressure={"left": 5.0, "right": 5.0}) for stroke in ring.program.cycle]
+    inlets = {"left": ["air side"], "right": ["sealed side"]}
+    replace(ring, fluid=replace(ring.fluid, inlet=inlets), program=replace(ring.program, cycle=cycle))
+
+
 def test_inlets_that_touch_need_the_same_pressure():
     squeezed = block()
     sides = nw.Fluid(edges=["right", "top", "left"], inlet={"one": ["right"], "other": ["top", "left"]})
