@@ -157,7 +157,7 @@ class Stepper:
             self._resolves(state)
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
 
-    def settle_on_new_mesh(self, state: State, *, anew: bool = True) -> None:
+    def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over.
 
         A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew.
@@ -165,7 +165,7 @@ class Stepper:
         Raises
         ------
         ConvergenceError
-            If it finds no equilibrium, or needs to be mounted ``anew`` and may not.
+            If it finds no equilibrium.
         """
         carried, floats = state.saved(), bool(state.stage.floats)
         sticks = floats and state.stage.has_stick_slip
@@ -179,11 +179,9 @@ class Stepper:
         state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})
         try:
             settle_carried(state)
-            self._settle_cycle(state, at_once=sticks or not anew)
+            self._settle_cycle(state, at_once=sticks)
             return
         except ConvergenceError as error:
-            if not anew:
-                raise
             log.info("%s: mounting anew on this mesh", error)
         try:
             state.stage.problem.state.vec[:] = 0.0

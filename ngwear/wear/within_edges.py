@@ -21,8 +21,8 @@ def evened(contour: Outline, profile: ContactProfile, share: Array) -> Array:
     ``s (4 x (1 - x) - 2/3)``, x from 0 to 1 along the edge, has neither: the middle stands off, both ends are in the
     surface, and no pressure tells of it. It comes about where a worn contact ends in a corner: the node there belongs
     to an edge out of contact, too, and lags behind. Finer elements of a later mesh would find a ridge, and a spike of
-    pressure. So the ends wear deeper by ``2/3 s``, and the points between them less. No end
-    becomes the deeper one: what stands off for another reason stays.
+    pressure. So the ends wear deeper by ``2/3 s``, and the points between them less. No end becomes the deeper one:
+    what stands off for another reason stays.
 
     Parameters
     ----------
