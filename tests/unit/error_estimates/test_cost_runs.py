@@ -22,7 +22,7 @@ from ngwear.error_estimates.cost_runs import NO_TIME, Limited, Point, _clock, _t
 from ngwear.error_estimates.ladder import STOPPED, Measurement
 from ngwear.error_estimates.settings import parameters, with_setting
 from ngwear.errors import ConvergenceError, SceneError
-from ngwear.loop import first_cycle
+from ngwear.loop import first_cycle, stroke_solve
 from ngwear.loop.stepper import Stepper
 from ngwear.parallel.sweep import sweep
 from ngwear.parallel.workers import one_thread_pool
@@ -103,12 +103,16 @@ def test_only_knobs_that_the_scene_calls_for(sheet, seal, tmp_path, write_sheet)
 def test_increments_of_the_load_are_no_knob(monkeypatch):
     """Of the torn seal, whose clamps stick: what they carry, and the peak, after strokes in increments of a quarter."""
 
-    def shorter(state, stroke, loads, options, real=first_cycle.advance_while_sliding, **how):
+    def first(state, stroke, loads, options, real=first_cycle.advance_while_sliding, **how):
         return real(state, stroke, loads, replace(options, first=0.25 * options.first, easy=2), **how)
 
+    def later(problem, target, options, real=stroke_solve.advance, **how):
+        return real(problem, target, replace(options, first=0.25 * options.first, easy=2), **how)
+
     scene, work, seen = shipped_scene(folder="torn_seal"), [], []
-    for advance in (first_cycle.advance_while_sliding, shorter):
-        monkeypatch.setattr(first_cycle, "advance_while_sliding", advance)
+    for own, others in ((first_cycle.advance_while_sliding, stroke_solve.advance), (first, later)):
+        monkeypatch.setattr(first_cycle, "advance_while_sliding", own)
+        monkeypatch.setattr(stroke_solve, "advance", others)
         state = Stepper(scene).start()
         work.append(state.work.solves)
         forces = [np.concatenate([*report.forces.values()]) for report in state.reports]
