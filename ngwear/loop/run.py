@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import re
+import sys
 import time
 from collections.abc import Callable
 from copy import copy
@@ -115,7 +116,7 @@ def run(
                 if folder is not None and figures and recorder.snapshots:
                     draw.draw_section(folder.path, recorder.sections)
                 on_step(state)
-            bar.begin(state)
+            bar.begin(state, recorder)
             while not stepper.finished(state):
                 state = stepper.advance(state)
                 _keep(folder, state, recorder, wall, cpu)
@@ -240,13 +241,13 @@ def _write_vtk(path: Path, state: State) -> None:
 
 
 class _Bar:
-    """Progress bar: mounting in per cent, then strokes with depth and cycles in a solve."""
+    """Progress bar: mounting in per cent, then strokes with depth and cycles in a solve; warnings as they come."""
 
     def __init__(self, scene: Scene, *, shown: bool) -> None:
         from tqdm import tqdm
 
         self._make = lambda **kwargs: tqdm(disable=not shown, dynamic_ncols=True, **kwargs)
-        self._scene = scene
+        self._scene, self._warns, self._said = scene, shown, set[str]()
         self._bar: Any = None
 
     def __enter__(self) -> _Bar:
@@ -261,11 +262,19 @@ class _Bar:
             self._bar = self._make(total=100, desc="mounting", unit="%")
         self._bar.update(round(100 * fraction) - self._bar.n)
 
-    def begin(self, state: State) -> None:
+    def begin(self, state: State, recorder: Recorder) -> None:
         if self._bar is not None:
             self._bar.close()
         total, done = self._done(self._scene.program.strokes), self._done(state.strokes)
         self._bar = self._make(total=total, initial=done, desc="wear", unit="stroke")
+        self._warn(recorder)
+
+    def _warn(self, recorder: Recorder) -> None:
+        """Say once what a solve shows, when it does so first: the summary has the worst case of each."""
+        for key, (_, stroke, sentence) in recorder.findings.items():
+            if self._warns and key not in self._said:
+                self._bar.write(f"warning: {sentence} (stroke {stroke})", file=sys.stderr)
+            self._said.add(key)
 
     def _done(self, strokes: int) -> float:
         return self._scene.program.counted(strokes)
@@ -276,3 +285,4 @@ class _Bar:
         self._bar.set_postfix_str(
             f"depth {1e3 * row['maximum depth [mm]']:.1f} µm, {row['strokes in one solve [-]']} a solve"
         )
+        self._warn(recorder)

@@ -94,6 +94,21 @@ def test_an_inlet_on_both_sides_of_a_contact_that_slides_is_told_of(cup):
     assert "contact 'rod' lies on the inlet of 'fluid' and seals nothing" in told[0]
 
 
+def test_a_warning_is_on_the_screen_when_a_solve_shows_it_first(cup, capsys):
+    below = ["air bottom", "lip back", "lip tip", "lip front", "lip end"]
+    scene = replace(
+        cup[0].scene, fluid=nw.Fluid(edges=NAMES, inlet=[*INLET, *below]), accuracy=nw.Accuracy.preset("draft")
+    )
+    said = []
+    run(scene, progress=True, on_step=lambda state: said.append(capsys.readouterr().err.count("seals nothing")))
+    assert len(said) > 1
+    said.append(capsys.readouterr().err.count("seals nothing"))
+    assert said[:2] == [0, 2], "for each stroke with pressure, once the part is mounted"
+    assert sum(said) == 2
+    run(scene)
+    assert not capsys.readouterr().err
+
+
 def test_a_stage_takes_the_places_to_its_own_mesh(cup):
     _, state = cup
     stage, places = state.stage, state.phases[2].passed
