@@ -41,16 +41,22 @@ def remeshes(state: State) -> bool:
 
 
 def refine_everywhere(state: State) -> None:
-    """Halve the edges of all elements, and transfer the state.
+    """Halve the edges of all elements, and those along the outline, and transfer the state.
+
+    An element that the outline's curvature makes short there may be long inside.
 
     Raises
     ------
     MeshError
         If the mesh fails a check; the state is then unchanged.
     """
-    points = state.stage.problem.points
+    points, body = state.stage.problem.points, state.stage.body
     points.follow()
-    remesh(state, scene=state.stage.scene, fine=np.column_stack([points.centres, FINER * points.edges]))
+    inside = np.column_stack([points.centres, points.edges])
+    t = body.outline.t
+    along = np.linalg.norm(body.contour.at(t[:, 1]) - body.contour.at(t[:, 0]), axis=1)
+    fine = np.vstack([inside, np.column_stack([body.contour.at(t.mean(axis=1)), along])])
+    remesh(state, scene=state.stage.scene, fine=fine * (1.0, 1.0, FINER))
     state.halved += 1
 
 

@@ -9,6 +9,8 @@ SAME_ERROR = {
     "worn volume": "worn area",
     "penetration": "maximum depth",
 }  # quantities with the same relative error as another one
+# Its error is relative to the highest one; that of a stroke is shown relative to its own.
+PEAK = "peak pressure [MPa]"
 TOOK = ("solves", "retries", "remeshes", "elements", "wall time [s]", "CPU time [s]", "peak memory [MB]")
 NOT_FOUND = {
     "strokes",
@@ -40,6 +42,8 @@ def _lines(summary: Mapping[str, Any]) -> Iterator[str]:
     for name, value in summary.items():
         if isinstance(value, int | float) and name not in NOT_FOUND and " of the " not in name:
             error = _error(name.split(" [")[0], errors)
+            if error is not None and name.endswith(PEAK) and value > 0:
+                error *= max(1.0, summary[PEAK] / value)
             yield f"  {name:50s} {value:<12.6g}" + ("" if error is None else f" ± {100 * error:.2g} %")
     for name, value in errors.items():
         quantity = name.removesuffix(" [-]")
