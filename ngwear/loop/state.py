@@ -76,6 +76,9 @@ class Phase:
         fraction of the way and the equilibrium there.
     fewest : bool
         Whether half as many load steps have failed.
+    failed, rests : int
+        How often in a row a solve at once has failed, and how many solves are done in load steps before it is tried
+        again.
     passed : array or None
         Reference places up to which the fluid has lifted contacts (``FluidPressure.passed``); None without.
     left : array or None
@@ -89,6 +92,8 @@ class Phase:
     shares: dict[str, Array] | None = None
     path: list[tuple[float, Array]] = field(default_factory=list)
     fewest: bool = False
+    failed: int = 0
+    rests: int = 0
     passed: Array | None = None
     left: Array | None = None
 

@@ -28,6 +28,8 @@ log = logging.getLogger(__name__)
 EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is the pressure that a pocket keeps
 # Settled on the shipped O-ring and the torn seal: the list in tests/benchmarks/README.md says by which command.
 FAR = 0.1  # of the section: how far a fluid passes contacts in one solve on a new mesh, before steps are taken
+RESTS = 3  # a solve at once that has failed so often in a row is tried in every eighth solve
+AHEAD = 2  # load steps of the last way that may be left out behind one that fails
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
 
@@ -57,7 +59,7 @@ def solve_stroke(
     work, path, fewest = Work(), phase.path, phase.fewest
     stage.let_fluid_pass(phase.passed, after=stage.scene.program.cycle[index - 1])
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
-    if (phase.path and phase.shares is None) or empties(state, index):
+    if (phase.path and (phase.shares is None or phase.rests > 0)) or empties(state, index):
         guesses = []  # on a new mesh a way that needed steps needs them again
     reports = (_solves(state, guess, work) for guess in guesses)
     last = None
@@ -71,6 +73,10 @@ def solve_stroke(
     rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
     shares = stage.shares(stroke)
     rate = rate if repeats else None
+    failed, rests = (0, 0) if solved else (phase.failed, max(phase.rests - 1, 0))
+    if guesses and not solved:
+        failed = min(phase.failed + 1, RESTS)
+        rests = 2**failed - 1
     state.phases[index] = replace(
         phase,
         vector=vector.copy(),
@@ -78,6 +84,8 @@ def solve_stroke(
         shares=shares,
         path=path,
         fewest=fewest,
+        failed=failed,
+        rests=rests,
         passed=stage.fluid_passed(),
         left=stage.fluid_left(),
     )
@@ -253,7 +261,8 @@ def _follow(
     """Reach a stroke's equilibrium by load steps of its last solve: half as many, if those suffice.
 
     Where friction sticks, an equilibrium depends on the way; the states on the last way are near those on this one.
-    A step that fails is taken in shorter ones.
+    A step that fails may be one at which the part snaps, which wear moves along the way: then the next ones are tried,
+    up to ``AHEAD``, whose last states lie behind the snap. If they fail, too, it is taken in shorter ones.
     """
     problem, known, fewest = state.stage.problem, state.phases[index].path, state.phases[index].fewest
     _begin_path(state, index)
@@ -273,11 +282,14 @@ def _follow(
     here = 0
     while here < len(known):
         begin, passed = problem.state.vec.FV().NumPy().copy(), state.stage.fluid_passed()
-        step = here + 1 if not fewest and (len(known) - here) % 2 == 0 else here
-        solved = solves(step)
-        if not solved and step > here:
-            step, fewest = here, True
-            solved = solves(step)
+        halved = not fewest and (len(known) - here) % 2 == 0
+        steps = [here + 1, here] if halved else [here]
+        if state.phases[index].shares is not None:  # else the last ways are those on another mesh
+            steps += [step for step in range(here + 1, here + 1 + AHEAD) if step not in steps and step < len(known)]
+        step = next((step for step in steps if solves(step)), None)
+        solved = step is not None
+        fewest |= halved and step != steps[0]
+        step = here if step is None else step
         goal = known[step][0]
         if solved:
             problem.commit()
@@ -288,9 +300,9 @@ def _follow(
             state.stage.let_fluid_pass(passed)
             for term in problem.terms:
                 term.refresh()
-            steps: list[tuple[float, Array]] = []
-            work.add(advance(problem, at(goal), replace(options, first=0.5), on_step=recorder(problem, steps)))
-            path += [(reached + fraction * (goal - reached), vector) for fraction, vector in steps]
+            shorter: list[tuple[float, Array]] = []
+            work.add(advance(problem, at(goal), replace(options, first=0.5), on_step=recorder(problem, shorter)))
+            path += [(reached + fraction * (goal - reached), vector) for fraction, vector in shorter]
         reached, here = goal, step + 1
     return path, fewest
 
