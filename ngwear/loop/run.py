@@ -14,7 +14,6 @@ from typing import Any, Protocol
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, ResultError
 from ngwear.files.result_folder import COMPLETED, GAVE_UP
 from ngwear.loop.checkpoint import load, save
-from ngwear.loop.fluid_let_in import fluid_errors
 from ngwear.loop.friction_left_out import friction_errors
 from ngwear.loop.halved_elements import add_mesh_errors, faded
 from ngwear.loop.result import Result
@@ -210,6 +209,10 @@ def _that_stand_apart(state: State) -> tuple[dict[str, float], list[str]]:
         errors |= friction_errors(state)
     except ConvergenceError as error:
         warnings.append(f"the error by the friction left out is not known: a cycle with less of it gave up ({error})")
+    if not state.stage.fluids:
+        return errors, warnings
+    from ngwear.loop.fluid_let_in import fluid_errors
+
     try:
         errors |= fluid_errors(state)
     except ConvergenceError as error:

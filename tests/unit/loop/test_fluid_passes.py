@@ -143,12 +143,12 @@ def test_a_run_states_it_or_says_that_it_is_not_known(ring, monkeypatch):
 
     monkeypatch.setattr(module, "add_mesh_errors", lambda state: [])
     by_fluid = f"{DEPTH[:-4]} {BY_FLUID}"
-    monkeypatch.setattr(module, "fluid_errors", lambda state: {by_fluid: 0.4})
+    monkeypatch.setattr(fluid_let_in, "fluid_errors", lambda state: {by_fluid: 0.4})
     assert run(ring, errors=lambda recorder, summary: None).summary["error estimates"][by_fluid] == 0.4
 
     def fails(state):
         raise nw.ConvergenceError("no equilibrium")
 
-    monkeypatch.setattr(module, "fluid_errors", fails)
+    monkeypatch.setattr(fluid_let_in, "fluid_errors", fails)
     told = run(ring, errors=lambda recorder, summary: None).summary
     assert any("the error by the fluid that may come in is not known" in warning for warning in told["warnings"])
