@@ -19,7 +19,7 @@ from dataclasses import replace
 import numpy as np
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
-from ngwear.loop.cycle_quantities import Quantities, read_cycle
+from ngwear.loop.cycle_quantities import Quantities, read_cycle, wear_per_stroke
 from ngwear.loop.finer_mesh import FINER, refine_everywhere, remeshes
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
@@ -35,13 +35,15 @@ def add_mesh_errors(state: State) -> list[str]:
     """Store the relative errors by the mesh in the present state in ``State.mesh_errors``, unless they are known.
 
     They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; the error
-    of the depth is that of the largest wear per cycle. Not for a part that is held, or rubber with memory. Returns a
+    of the depth is that of the largest wear per cycle, and of the wear at its place: largest values may agree by chance
+    though those of each place do not. Not for a part that is held, or rubber with memory. Returns a
     warning if there is no equilibrium on the finer elements.
     """
     if state.mesh_errors or state.memory is not None or not remeshes(state):
         return []
     try:
-        mine, other = read_cycle(next_cycle(state) if state.strokes else state), read_cycle(_on_halved(state))
+        here, there = next_cycle(state) if state.strokes else state, _on_halved(state)
+        mine, other = read_cycle(here), read_cycle(there)
     except (ConvergenceError, GeometryError, MeshError) as error:
         return [
             "elements of half the edges do not tell the error by the mesh, only coarser ones do: "
@@ -50,6 +52,7 @@ def add_mesh_errors(state: State) -> list[str]:
     finally:
         Stepper(state.stage.scene).restore_last_stroke(state)
     changes = relative_errors(mine, other)
+    changes[DEPTH] = max(changes[DEPTH], _change_where_deepest(here, there))
     state.mesh_errors = {f"{name[:-4]} {BY_HALVED}": REMAINS * change for name, change in changes.items()}
     state.first_wear = _largest_wear(mine)
     return []
@@ -59,6 +62,19 @@ def faded(state: State) -> dict[str, float]:
     """``State.mesh_errors`` times what is left of the largest wear per cycle; that of the peak pressure as it is."""
     left = min(1.0, _largest_wear(read_cycle(state)) / state.first_wear) if state.first_wear > 0 else 1.0
     return {name: error * (1.0 if name == BY_PEAK else left) for name, error in state.mesh_errors.items()}
+
+
+def _change_where_deepest(here: State, there: State) -> float:
+    """Change of the wear per cycle where it is largest, over the largest of all wearing contacts [-]."""
+    change = largest = 0.0
+    for spec in (spec for spec in here.stage.scene.contacts if spec.wears):
+        wear, other = (wear_per_stroke(state, spec.name).sum(axis=0) for state in (here, there))
+        before, after = (state.reports[-1].contacts[spec.name].reference for state in (here, there))
+        if wear.max() > largest:
+            largest, deepest = float(wear.max()), int(wear.argmax())
+            nearest = np.linalg.norm(after - before[deepest], axis=1).argmin()
+            change = abs(float(wear[deepest] - other[nearest]))
+    return change / largest if largest > 0 else 0.0
 
 
 def _largest_wear(read: Quantities) -> float:

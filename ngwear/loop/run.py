@@ -209,14 +209,14 @@ def _that_stand_apart(state: State) -> tuple[dict[str, float], list[str]]:
         errors |= friction_errors(state)
     except ConvergenceError as error:
         warnings.append(f"the error by the friction left out is not known: a cycle with less of it gave up ({error})")
-    if not state.stage.fluids:
-        return errors, warnings
-    from ngwear.loop.fluid_let_in import fluid_errors
+    if state.stage.fluids:
+        from ngwear.loop.fluid_let_in import fluid_errors
 
-    try:
-        errors |= fluid_errors(state)
-    except ConvergenceError as error:
-        warnings.append(f"the error by the fluid that may come in is not known: the cycle with it gave up ({error})")
+        try:
+            errors |= fluid_errors(state)
+        except ConvergenceError as error:
+            why = f"the cycle with it gave up ({error})"
+            warnings.append(f"the error by the fluid that may come in is not known: {why}")
     return errors, warnings
 
 

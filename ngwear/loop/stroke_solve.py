@@ -283,15 +283,14 @@ def _follow(
     while here < len(known):
         begin, passed = problem.state.vec.FV().NumPy().copy(), state.stage.fluid_passed()
         halved = not fewest and (len(known) - here) % 2 == 0
-        steps = [here + 1, here] if halved else [here]
-        if state.phases[index].shares is not None:  # else the last ways are those on another mesh
-            steps += [step for step in range(here + 1, here + 1 + AHEAD) if step not in steps and step < len(known)]
-        step = next((step for step in steps if solves(step)), None)
-        solved = step is not None
-        fewest |= halved and step != steps[0]
-        step = here if step is None else step
+        ahead = 0 if state.phases[index].shares is None else AHEAD  # those on another mesh are of no use
+        tried = [here + 1] if halved else []
+        tried += [step for step in range(here, min(here + 1 + ahead, len(known))) if step not in tried]
+        solved = next((step for step in tried if solves(step)), None)
+        fewest |= halved and solved != here + 1
+        step = here if solved is None else solved
         goal = known[step][0]
-        if solved:
+        if solved is not None:
             problem.commit()
             path.append((goal, problem.state.vec.FV().NumPy().copy()))
         else:
