@@ -20,7 +20,7 @@ from ngwear.scene.scene import Scene
 from ngwear.surfaces import WornProfile
 from ngwear.wear.jump_control import JumpControl
 
-FORMAT = Format("checkpoint", 3, "remove the folder and run again, or give another one")  # 1: a pickle
+FORMAT = Format("checkpoint", 4, "remove the folder and run again, or give another one")  # 1: a pickle
 PLAIN = (
     Finding,
     Accuracy,

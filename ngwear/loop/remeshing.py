@@ -92,17 +92,24 @@ def remesh(
 
 
 def replace_stage(state: State, stage: Stage, vectors: list[Array]) -> None:
-    """Replace the stage; values on the outline are interpolated.
+    """Replace the stage; values on the outline are interpolated, and worn areas keep their sum.
 
     ``vectors`` are the states of the strokes on it, and then, as far as given, those of their load steps.
     """
     values = _Interpolation(state.contour, stage.body.contour)
+    widths = [contour.widths(stage.scene.worn_edges) for contour in (state.contour, stage.body.contour)]
+
+    def areas(given: Array) -> Array:
+        found = values(given / widths[0]) * widths[1]
+        whole, sums = given.sum(axis=-1), found.sum(axis=-1)
+        return found * np.divide(whole, sums, out=np.zeros_like(whole), where=sums > 0)[..., None]
+
     ends, ways = vectors[: len(state.phases)], iter(vectors[len(state.phases) :])
     for phase, vector in zip(state.phases, ends, strict=True):
         phase.vector, phase.rate, phase.shares = vector, None, None
         phase.path = [(fraction, way) for (fraction, _), way in zip(phase.path, ways, strict=False)]
         if phase.worn is not None:
-            phase.worn = replace(phase.worn, pressure=values(phase.worn.pressure), mean=values(phase.worn.mean))
+            phase.worn = replace(phase.worn, end=areas(phase.worn.end), mean=areas(phase.worn.mean))
     if state.depths is not None:
         state.depths = values(state.depths)
     state.stage = stage

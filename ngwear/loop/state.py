@@ -38,20 +38,17 @@ class LastWear:
 
     Attributes
     ----------
-    pressure : array, shape (contacts, n)
-        Worn depth over sliding distance at the pressure of the end of the step and the largest wear rate, ``k P / J``
-        [-]. Depths, not areas, because the points of a sharp lip come closer as it wears.
+    end : array, shape (contacts, n)
+        Worn area over sliding distance by the pressure of the end of the step and the largest wear rate, ``k P / J``
+        times the length of the outline there [mm].
     mean : array, shape (contacts, n)
-        Mean of the same over the step: worn depth over ``ways`` [-].
-    area : array, shape (contacts,)
-        Worn area over ``ways`` [mm].
+        Mean of the same over the step: worn area over ``ways`` [mm].
     ways : array, shape (contacts,)
         Equivalent sliding distance of the step, ``int k ds / max k`` [mm].
     """
 
-    pressure: Array
+    end: Array
     mean: Array
-    area: Array
     ways: Array
 
 

@@ -37,7 +37,9 @@ class WearStep:
     Implicit wear of second order in the step. The outline is predicted: it moves by the wear at the mean pressure of
     the last step, so that the rubber has about the thickness and position of the end of the step. The depth in the
     solve is measured from the predicted outline: ``w_1 - w_0 = kappa (a q_0 + (1 - a) p_1)`` as in
-    ``wear.backward_differences``. Where friction may stick, and after a step whose error is large or not known, it is
+    ``wear.backward_differences``. The outline loses areas, each point by the pressures times the lengths at which they
+    act, ``kappa (a q_0 l_0 + (1 - a) p_1 l_1)``: of second order where the points come closer, as at a sharp lip, and
+    the sum is that of the loads. Where friction may stick, and after a step whose error is large or not known, it is
     backward Euler without a predicted outline: first order, and reliable where a contact begins to spread.
 
     Attributes
@@ -47,7 +49,8 @@ class WearStep:
     end_weight : array, shape (contacts,)
         Weight of the pressure at the end of the step, 1 - a [-].
     last_depth : array, shape (contacts, n)
-        Depth at the points of the outline by the mean pressure of the last step, ``kappa a q_0`` [mm].
+        Depth at the points of the outline by the mean load of the last step, ``kappa a q_0 l_0`` over the length
+        halfway [mm].
     predicted_depth : array, shape (contacts, n)
         Depth between the outline and the predicted outline [mm].
     later_depth : array, shape (n,)
@@ -80,8 +83,10 @@ class WearStep:
             share = np.array([share_of_last(*pair) for pair in zip(ways, phase.worn.ways, strict=True)])
             depth = wear_step._depth_at_mean_pressure(index, sliding)
             share *= depth.any(axis=1)
-            wear_step.end_weight, wear_step.last_depth = 1.0 - share, share[:, None] * depth
+            wear_step.end_weight = 1.0 - share
             wear_step._predict_outline(depth, later or {})
+            lengths = [of.widths(scene.worn_edges) for of in (outline, wear_step.halfway)]
+            wear_step.last_depth = share[:, None] * depth * lengths[0] / lengths[1]
         implicit = scene.wear.scheme == "implicit"
         depth = wear_step.last_depth - wear_step.predicted_depth + wear_step.later_depth
         for spec, weight, known in zip(scene.contacts, wear_step.end_weight, depth, strict=True):
@@ -93,10 +98,7 @@ class WearStep:
 
     @property
     def halfway(self) -> Outline:
-        """Outline midway between the outline and the predicted one; there, worn area is depth times length.
-
-        With the lengths of the old outline convex places would wear too deep; with those of the new one ripples grow.
-        """
+        """Outline midway between the outline and the predicted one; there, worn area is depth times length."""
         return self.outline.moved(0.5 * (self.state.contour.points - self.outline.points))
 
     @property
@@ -105,7 +107,7 @@ class WearStep:
         return self._ways(self.sliding)
 
     def _depth_at_mean_pressure(self, kind: int, sliding: Strokes) -> Array:
-        """Depth at the outline points by the mean pressure of the last step of a kind of stroke [mm], each contact.
+        """Depth at the outline points by the mean load of the last step of a kind of stroke [mm], each contact.
 
         Zero where friction may stick: a place that has slipped may stick now.
         """
@@ -113,7 +115,7 @@ class WearStep:
         if worn is None:
             return np.zeros_like(self.last_depth)
         slides = np.array([not stage.contacts[c.name].slips_in_part for c in stage.scene.contacts])
-        return (slides * self._ways(sliding))[:, None] * worn.mean
+        return (slides * self._ways(sliding))[:, None] * worn.mean / self.outline.widths(stage.scene.worn_edges)
 
     def _ways(self, sliding: Strokes) -> Array:
         return np.array([sliding.worn_distance(c.wear_rate) for c in self.state.stage.scene.contacts])
@@ -144,13 +146,13 @@ class WearStep:
         scene, phase = self.state.stage.scene, self.state.phases[self.index]
         if self.state.stage.has_stick_slip:
             return
-        width, none = self.outline.widths(scene.worn_edges), np.zeros_like(self.last_depth)
-        pressure, no_contact = none.copy(), np.zeros(len(none))
+        none = np.zeros_like(self.last_depth)
+        end = none.copy()
         for k, spec in enumerate(scene.contacts):
             if spec.wears:
                 profile, rate = self._rate(spec, {})
-                pressure[k] = worn_share(self.outline, profile, rate * profile.weight) / width
-        phase.worn = LastWear(pressure=pressure, mean=none, area=no_contact, ways=no_contact)
+                end[k] = worn_share(self.outline, profile, rate * profile.weight)
+        phase.worn = LastWear(end=end, mean=none, ways=np.zeros(len(none)))
 
     def _rate(self, spec: Contact, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
         """A contact's profile, and worn depth over sliding distance at its nodes by the present pressures [-].
@@ -210,32 +212,27 @@ class WearStep:
 
             state.counters = counter_surface.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off, err = np.zeros((3, len(outline)))
-        pressure, mean, ways = np.zeros_like(self.last_depth), np.zeros_like(self.last_depth), self.ways
-        whole = np.zeros(len(ways))
+        end, mean, ways = np.zeros_like(self.last_depth), np.zeros_like(self.last_depth), self.ways
         for k, spec in enumerate(scene.contacts):
             if not spec.wears or ways[k] == 0:
                 continue
             profile, rate = self._rate(spec, shares)
-            amount = rate * profile.weight
-            mine = worn_share(halfway, profile, amount) / width
-            before = 1.0  # rescales the last depth to an outline whose length has changed
-            if last is not None and last.mean[k].any():
-                before = last.area[k] / (last.mean[k] * width).sum()
-            area = (self.end_weight[k] * ways[k] * mine + before * self.last_depth[k]) * width
-            whole[k] = area.sum() / ways[k]
-            share += evened(halfway, profile, area)
-            pressure[k], mean[k] = mine, area / ways[k] / width
+            end[k] = worn_share(state.contour, profile, rate * profile.weight)
+            area = self.end_weight[k] * ways[k] * end[k]
             if last is not None:
-                difference = area / width - 0.5 * ways[k] * (before * last.pressure[k] + mine)
-                difference = profile.between_nodes(difference) * width
+                area += (1.0 - self.end_weight[k]) * ways[k] * last.mean[k]
+                difference = area - 0.5 * ways[k] * (last.end[k] + end[k])
+                difference = profile.between_nodes(difference / width) * width
                 off += difference
                 err += difference * error_over_difference(ways[k], last.ways[k] if self.end_weight[k] < 1.0 else 0.0)
+            mean[k] = area / ways[k]
+            share += evened(halfway, profile, area)
         known, error = last is not None, float(np.abs(off).sum())
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
             state.ledger.area_error += error
         self._book_depths(share / width, err / width)
-        phase.worn = LastWear(pressure=pressure, mean=mean, area=whole, ways=ways)
+        phase.worn = LastWear(end=end, mean=mean, ways=ways)
         if scene.deactivation is not None:
             from ngwear.geometry.element_body import elements
             from ngwear.loop import lost_elements
