@@ -31,7 +31,7 @@ from ngwear.loop.repeating_cycle import CYCLE_STEPS, repeat_cycle, still_creeps
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State, StrokeReport
 from ngwear.loop.stroke_report import stroke_report
-from ngwear.loop.stroke_solve import pass_stroke, settle_last_stroke, solve_stroke
+from ngwear.loop.stroke_solve import NeedsLoadStepsError, pass_stroke, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.boundary import GO_ON
 from ngwear.scene.scene import Scene
@@ -160,7 +160,8 @@ class Stepper:
     def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over.
 
-        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew.
+        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew; at once anew,
+        if it is a load step of the last way that fails: that does not depend on the state carried over.
 
         Raises
         ------
@@ -168,30 +169,38 @@ class Stepper:
             If it finds no equilibrium.
         """
         carried, floats = state.saved(), bool(state.stage.floats)
-        sticks = floats and state.stage.has_stick_slip
+        ways = [self._held_back, self._anew]
         try:
             self._settle_cycle(state, at_once=floats)
             return
         except ConvergenceError as error:
             if not floats:
                 raise
-            log.info("%s: held back on the new mesh", error)
-        state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})
-        try:
-            settle_carried(state)
-            self._settle_cycle(state, at_once=sticks)
-            return
-        except ConvergenceError as error:
-            log.info("%s: mounting anew on this mesh", error)
-        try:
-            state.stage.problem.state.vec[:] = 0.0
-            first_cycle(state, lambda fraction: None, self._lost_elements)
-            self._settle_cycle(state)
-        except ConvergenceError:
-            if not sticks:
-                raise
-            state.restore(carried)
-            self._settle_cycle(state)
+            log.info("%s: on other ways to this mesh", error)
+            if not isinstance(error, NeedsLoadStepsError):
+                ways.reverse()
+        if state.stage.has_stick_slip:
+            ways.append(self._settle_cycle)
+        for way in ways:
+            state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})
+            try:
+                way(state)
+                return
+            except ConvergenceError as error:
+                log.info("%s: on another way", error)
+                if way == ways[-1]:
+                    raise
+
+    def _held_back(self, state: State) -> None:
+        """Settle the cycle after the states carried over have been brought near their equilibrium."""
+        settle_carried(state)
+        self._settle_cycle(state, at_once=state.stage.has_stick_slip)
+
+    def _anew(self, state: State) -> None:
+        """Mount the part on this mesh, and settle the cycle."""
+        state.stage.problem.state.vec[:] = 0.0
+        first_cycle(state, lambda fraction: None, self._lost_elements)
+        self._settle_cycle(state)
 
     def _resolves(self, state: State) -> bool:
         """Settle the cycle on finer elements where the last solves ask for them; False if none do, or it fails."""

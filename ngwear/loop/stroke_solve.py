@@ -33,6 +33,10 @@ AHEAD = 2  # load steps of the last way that may be left out behind one that fai
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
 
+class NeedsLoadStepsError(ConvergenceError):
+    """A stroke has no equilibrium at once; load steps were not tried."""
+
+
 def solve_stroke(
     state: State,
     index: int,
@@ -44,12 +48,15 @@ def solve_stroke(
 ) -> int:
     """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
 
-    ``plan`` is the plan of the step, for the memory. With ``at_once`` no load steps are tried.
+    ``plan`` is the plan of the step, for the memory. With ``at_once`` load steps are tried only if the last solve on
+    another mesh needed them.
 
     Raises
     ------
+    NeedsLoadStepsError
+        If there is no equilibrium at once.
     ConvergenceError
-        If no equilibrium is found.
+        If a load step fails.
     """
     stage, phase = state.stage, state.phases[index]
     problem = stage.problem
@@ -66,7 +73,7 @@ def solve_stroke(
     solved = any((last := report).converged for report in reports)
     if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
         if at_once and last is not None:
-            raise ConvergenceError(f"the {stroke.name} stroke needs load steps", last)
+            raise NeedsLoadStepsError(f"the {stroke.name} stroke needs load steps", last)
         starts = bool(stage.floats) and repeats == 0 and state.strokes == 0
         path, fewest = _by_steps(state, index, stroke, work, hard=repeats > 1 or starts)
     state.work.add(work)
@@ -162,6 +169,8 @@ def settle_last_stroke(state: State, *, at_once: bool = False) -> None:
 
     Raises
     ------
+    NeedsLoadStepsError
+        If there is no equilibrium ``at_once``.
     ConvergenceError
         If there is no equilibrium nearby.
     """
@@ -172,7 +181,7 @@ def settle_last_stroke(state: State, *, at_once: bool = False) -> None:
     stage.leave_fluid(last.left)
     report = _solves(state, last.vector, work)
     if at_once and not report.converged:
-        raise ConvergenceError("the last stroke of the cycle needs load steps", report)
+        raise NeedsLoadStepsError("the last stroke of the cycle needs load steps", report)
     if not report.converged:
         _set_guess(state, last.vector)
         work.add(relax(stage.problem, StepOptions(first=0.25, smallest=HARDEST)))
