@@ -114,6 +114,7 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
     kept, solver = False, problem.solver if options.reuse else None
     left = 1.0 if solver is None else 0.0
     goal, longest = options.tolerance * size, 1.0
+    whole: list[float] = []  # corrections, undamped
     for report.iterations in range(1, options.max_iterations + 1):
         kept = left <= EXACT if options.reuse else _will_do(report.corrections, nearly, kept=kept)
         if not kept:
@@ -147,13 +148,14 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
         left = min(1.0, solver.scaled_norm(residual) / before) if before > 0 else 1.0
         change = step * asked
         report.corrections.append(change)
+        whole.append(asked)
         # Far below the tolerance the displacement is exact, and further changes of pressure do no work.
         settled = change <= 1e-4 * goal or _settled(vector, correction, pressures, options.pressure_tolerance, left)
         leaves = change * _ratio(report.corrections) if kept and not options.reuse else 0.0
         if step == 1.0 and change <= goal and leaves <= LEAVES * goal and settled:
             report.outcome = Outcome.CONVERGED
             break
-        if _stalled(report.corrections):
+        if _stalled(whole):
             report.outcome = Outcome.STALLED
             break
     return report

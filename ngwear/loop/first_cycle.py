@@ -51,7 +51,8 @@ def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: 
         needed &= whole and state.halved == halved  # the way with other friction, or on another mesh, is of no use
         path = path if needed else []
         vector = stage.problem.state.vec.FV().NumPy().copy()
-        state.phases.append(Phase(vector, path=path, passed=stage.fluid_passed(), left=stage.fluid_left()))
+        shares, passed, left = stage.shares(stroke), stage.fluid_passed(), stage.fluid_left()
+        state.phases.append(Phase(vector, shares=shares, path=path, passed=passed, left=left))
         forces.append(stage.forces())
         on_mount(0.7 + 0.2 * (i + 1) / len(cycle))
     return forces

@@ -271,7 +271,8 @@ def _follow(
 
     Where friction sticks, an equilibrium depends on the way; the states on the last way are near those on this one.
     A step that fails may be one at which the part snaps, which wear moves along the way: then the next ones are tried,
-    up to ``AHEAD``, whose last states lie behind the snap. If they fail, too, it is taken in shorter ones.
+    up to ``AHEAD``, whose last states lie behind the snap. If they fail, too, it is taken in shorter ones. If that is
+    easy the part is elsewhere than on its last way: its states are not tried until it snaps again.
     """
     problem, known, fewest = state.stage.problem, state.phases[index].path, state.phases[index].fewest
     _begin_path(state, index)
@@ -288,15 +289,15 @@ def _follow(
         solved = _solves(state, known[step][1], work).converged
         return solved and not (carried and _passes_far(state.stage, state.phases[index].passed))
 
-    here = 0
+    here, elsewhere = 0, False
     while here < len(known):
         begin, passed = problem.state.vec.FV().NumPy().copy(), state.stage.fluid_passed()
         halved = not fewest and (len(known) - here) % 2 == 0
         ahead = 0 if state.phases[index].shares is None else AHEAD  # those on another mesh are of no use
         tried = [here + 1] if halved else []
         tried += [step for step in range(here, min(here + 1 + ahead, len(known))) if step not in tried]
-        solved = next((step for step in tried if solves(step)), None)
-        fewest |= halved and solved != here + 1
+        solved = None if elsewhere else next((step for step in tried if solves(step)), None)
+        fewest |= halved and not elsewhere and solved != here + 1
         step = here if solved is None else solved
         goal = known[step][0]
         if solved is not None:
@@ -309,7 +310,10 @@ def _follow(
             for term in problem.terms:
                 term.refresh()
             shorter: list[tuple[float, Array]] = []
-            work.add(advance(problem, at(goal), replace(options, first=0.5), on_step=recorder(problem, shorter)))
+            way = replace(options, first=1.0 if elsewhere else 0.5)
+            done = advance(problem, at(goal), way, on_step=recorder(problem, shorter))
+            work.add(done)
+            elsewhere = done.retries == 0
             path += [(reached + fraction * (goal - reached), vector) for fraction, vector in shorter]
         reached, here = goal, step + 1
     return path, fewest
