@@ -109,7 +109,9 @@ def replace_stage(state: State, stage: Stage, vectors: list[Array]) -> None:
         phase.vector, phase.rate, phase.shares = vector, None, None
         phase.path = [(fraction, way) for (fraction, _), way in zip(phase.path, ways, strict=False)]
         if phase.worn is not None:
-            phase.worn = replace(phase.worn, end=areas(phase.worn.end), mean=areas(phase.worn.mean))
+            lengths = values(phase.worn.lengths / widths[0]) * widths[1]
+            end, mean = areas(phase.worn.end), areas(phase.worn.mean)
+            phase.worn = replace(phase.worn, end=end, mean=mean, lengths=lengths)
     if state.depths is not None:
         state.depths = values(state.depths)
     state.stage = stage

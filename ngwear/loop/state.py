@@ -43,12 +43,15 @@ class LastWear:
         times the length of the outline there [mm].
     mean : array, shape (contacts, n)
         Mean of the same over the step: worn area over ``ways`` [mm].
+    lengths : array, shape (2, n)
+        Length of the outline at each point at the end of the step, and halfway [mm].
     ways : array, shape (contacts,)
         Equivalent sliding distance of the step, ``int k ds / max k`` [mm].
     """
 
     end: Array
     mean: Array
+    lengths: Array
     ways: Array
 
 

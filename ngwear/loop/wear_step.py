@@ -152,7 +152,8 @@ class WearStep:
             if spec.wears:
                 profile, rate = self._rate(spec, {})
                 end[k] = worn_share(self.outline, profile, rate * profile.weight)
-        phase.worn = LastWear(end=end, mean=none, ways=np.zeros(len(none)))
+        width = self.outline.widths(scene.worn_edges)
+        phase.worn = LastWear(end=end, mean=none, lengths=np.stack([width, width]), ways=np.zeros(len(none)))
 
     def _rate(self, spec: Contact, shares: dict[str, Any]) -> tuple[ContactProfile, Array]:
         """A contact's profile, and worn depth over sliding distance at its nodes by the present pressures [-].
@@ -186,9 +187,10 @@ class WearStep:
     def apply(self) -> bool:
         """Remove the worn area from the outline; return whether its error is known.
 
-        The error of the area is the difference from the trapezoidal rule at the nodes of the mesh, summed over the
-        outline in absolute value; the shape between the nodes does not depend on the step. The error of the depth at a
-        point is the estimate of ``wear.backward_differences`` with its sign, so that errors of opposite sign cancel.
+        The error of the area is the difference of the depth from that by the trapezoidal rule at the nodes of the mesh,
+        times their lengths, summed over the outline in absolute value; the shape between the nodes does not depend on
+        the step. The error of the depth at a point is the estimate of ``wear.backward_differences`` with its sign, so
+        that errors of opposite sign cancel.
 
         Raises
         ------
@@ -213,6 +215,7 @@ class WearStep:
             state.counters = counter_surface.worn(stage, state.counters, self.index, self.sliding, shares)
         share, off, err = np.zeros((3, len(outline)))
         end, mean, ways = np.zeros_like(self.last_depth), np.zeros_like(self.last_depth), self.ways
+        lengths = np.stack([state.contour.widths(scene.worn_edges), width])
         for k, spec in enumerate(scene.contacts):
             if not spec.wears or ways[k] == 0:
                 continue
@@ -220,9 +223,11 @@ class WearStep:
             end[k] = worn_share(state.contour, profile, rate * profile.weight)
             area = self.end_weight[k] * ways[k] * end[k]
             if last is not None:
-                area += (1.0 - self.end_weight[k]) * ways[k] * last.mean[k]
-                difference = area - 0.5 * ways[k] * (last.end[k] + end[k])
-                difference = profile.between_nodes(difference / width) * width
+                carried = (1.0 - self.end_weight[k]) * last.mean[k]
+                area += ways[k] * carried
+                now, before = end[k] / lengths[0], last.end[k] / last.lengths[0]
+                depth = self.end_weight[k] * now + carried / last.lengths[1]
+                difference = profile.between_nodes(ways[k] * (depth - 0.5 * (before + now))) * width
                 off += difference
                 err += difference * error_over_difference(ways[k], last.ways[k] if self.end_weight[k] < 1.0 else 0.0)
             mean[k] = area / ways[k]
@@ -232,7 +237,7 @@ class WearStep:
         if known:
             state.ledger.area_error += error
         self._book_depths(share / width, err / width)
-        phase.worn = LastWear(end=end, mean=mean, ways=ways)
+        phase.worn = LastWear(end=end, mean=mean, lengths=lengths, ways=ways)
         if scene.deactivation is not None:
             from ngwear.geometry.element_body import elements
             from ngwear.loop import lost_elements
