@@ -24,13 +24,14 @@ MOVING = 1 / 16  # of a load change: the first step of a part with room to move;
 
 
 def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:
-    """Mount the part and solve each stroke of the cycle once, in load steps, each from the one before.
+    """Mount the unloaded part and solve each stroke of the cycle once, in load steps, each from the one before.
 
     Returns the forces on the part in each stroke.
     """
     forces: list[Forces] = []
-    cycle, begin = state.stage.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy().copy()
-    state.phases = []
+    cycle, vector = state.stage.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy()
+    vector[:] = 0.0
+    begin, state.phases = vector.copy(), []
     state.stage.leave_fluid(np.empty((0, 3)))
     state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
     if lost_elements is not None:

@@ -97,10 +97,13 @@ def replace_stage(state: State, stage: Stage, vectors: list[Array]) -> None:
     ``vectors`` are the states of the strokes on it, and then, as far as given, those of their load steps.
     """
     values = _Interpolation(state.contour, stage.body.contour)
-    widths = [contour.widths(stage.scene.worn_edges) for contour in (state.contour, stage.body.contour)]
+    before, after = (contour.widths(stage.scene.worn_edges) for contour in (state.contour, stage.body.contour))
+
+    def of_lengths(given: Array) -> Array:
+        return values(given / before) * after
 
     def areas(given: Array) -> Array:
-        found = values(given / widths[0]) * widths[1]
+        found = of_lengths(given)
         whole, sums = given.sum(axis=-1), found.sum(axis=-1)
         return found * np.divide(whole, sums, out=np.zeros_like(whole), where=sums > 0)[..., None]
 
@@ -109,9 +112,8 @@ def replace_stage(state: State, stage: Stage, vectors: list[Array]) -> None:
         phase.vector, phase.rate, phase.shares = vector, None, None
         phase.path = [(fraction, way) for (fraction, _), way in zip(phase.path, ways, strict=False)]
         if phase.worn is not None:
-            lengths = values(phase.worn.lengths / widths[0]) * widths[1]
-            end, mean = areas(phase.worn.end), areas(phase.worn.mean)
-            phase.worn = replace(phase.worn, end=end, mean=mean, lengths=lengths)
+            last = phase.worn
+            phase.worn = replace(last, end=areas(last.end), mean=areas(last.mean), lengths=of_lengths(last.lengths))
     if state.depths is not None:
         state.depths = values(state.depths)
     state.stage = stage

@@ -103,9 +103,8 @@ class Stepper:
         longest = max(1, math.ceil(tolerances.longest_jump * cycles))
         if scene.wear.max_jump is not None:
             longest = min(scene.wear.max_jump, longest)
-        first = (
-            1 if scene.deactivation is not None else max(1, longest // FIRST)
-        )  # a long first step would tear too much
+        tears = scene.deactivation is not None  # a long first step would tear too much
+        first = 1 if tears else max(1, longest // FIRST)
         control = JumpControl(tolerances.wear_error, depth=tolerances.depth_error, cycles=first, longest=longest)
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
@@ -176,7 +175,6 @@ class Stepper:
         except ConvergenceError as error:
             if not floats:
                 raise
-            log.info("%s: on other ways to this mesh", error)
             if not isinstance(error, NeedsLoadStepsError):
                 ways.reverse()
         if state.stage.has_stick_slip:
@@ -198,7 +196,6 @@ class Stepper:
 
     def _anew(self, state: State) -> None:
         """Mount the part on this mesh, and settle the cycle."""
-        state.stage.problem.state.vec[:] = 0.0
         first_cycle(state, lambda fraction: None, self._lost_elements)
         self._settle_cycle(state)
 

@@ -9,6 +9,7 @@ from ngwear.loop import stepper
 from ngwear.loop.carried_state import settle_carried
 from ngwear.loop.finer_mesh import refine_everywhere
 from ngwear.loop.stepper import Stepper
+from ngwear.loop.stroke_solve import NeedsLoadStepsError
 
 
 @pytest.fixture
@@ -59,13 +60,28 @@ def test_else_it_is_mounted_anew(ring, carried, monkeypatch):
     state, before = carried
 
     def fails(state):
-        raise ConvergenceError("no equilibrium")
+        raise NeedsLoadStepsError("no equilibrium")
 
     monkeypatch.setattr(stepper, "settle_carried", fails)
     settle = Stepper._settle_cycle
     monkeypatch.setattr(
         Stepper, "_settle_cycle", lambda self, state, at_once=False: fails(state) if at_once else settle(self, state)
     )
+    Stepper(ring).settle_on_new_mesh(state)
+    assert push(state) == pytest.approx(before, rel=0.05)
+
+
+def test_at_once_anew_if_a_load_step_fails(ring, carried, monkeypatch):
+    state, before = carried
+    monkeypatch.setattr(stepper, "settle_carried", None)  # not tried
+    settle = Stepper._settle_cycle
+
+    def fails_on_the_last_way(self, state, at_once=False):
+        if at_once:
+            raise ConvergenceError("no equilibrium in a load step")
+        settle(self, state)
+
+    monkeypatch.setattr(Stepper, "_settle_cycle", fails_on_the_last_way)
     Stepper(ring).settle_on_new_mesh(state)
     assert push(state) == pytest.approx(before, rel=0.05)
 

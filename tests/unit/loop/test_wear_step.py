@@ -7,6 +7,7 @@ import pytest
 
 from ngwear.errors import MeshError
 from ngwear.geometry.outline import Outline
+from ngwear.loop.finer_mesh import refine_everywhere
 from ngwear.loop.remeshing import _Interpolation
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.stroke_solve import solve_stroke
@@ -68,6 +69,19 @@ def test_a_new_outline_keeps_the_shape_of_values():
     moved = _Interpolation(before, after)(np.stack([1 + np.cos(angle), np.zeros_like(angle)]))
     assert np.abs(moved[0] - (1 + np.cos(fine))).max() < 5e-3
     assert (moved[1] == 0).all()
+
+
+def test_a_new_mesh_keeps_worn_areas_and_pressures(fine_sheet):
+    stepper = Stepper(fine_sheet)
+    state = stepper.advance(stepper.start())
+    last = state.phases[0].worn
+    peak = (last.end / last.lengths[0]).max()
+    refine_everywhere(state)
+    new = state.phases[0].worn
+    assert new.end.shape[1] == len(state.contour) != last.end.shape[1]
+    assert new.end.sum() == pytest.approx(last.end.sum(), rel=1e-12)
+    assert new.mean.sum() == pytest.approx(last.mean.sum(), rel=1e-12)
+    assert (new.end / new.lengths[0]).max() == pytest.approx(peak, rel=0.05)
 
 
 @pytest.fixture(scope="module")
