@@ -7,8 +7,9 @@ error of the finest one.
 Peak pressures and contact ends scatter from stroke to stroke, because they depend on the positions of the nodes. So the
 histories over the last half of the run are compared at the same strokes, by their mean square.
 
-Errors of mesh and jumps may cancel in one run and not in the next. So the error of the depth is never less than the
-embedded estimate of the wear steps.
+The steps of the coarser runs may err much more than those of the run, and errors of mesh and steps may cancel in one
+run and not in the next. The embedded estimate of a depth's error has a sign. So it is taken off the depths before they
+are compared, and that of the run is added to the error by the mesh.
 
 For parts with room to move, an error is at least that by elements of half the edges (``ngwear.loop.halved_elements``).
 They have one coarser run only, and it is waited for as long as the run itself took: on very coarse elements such a part
@@ -53,11 +54,12 @@ from ngwear.results.quantities_of_interest import (
     BY_HALVED,
     BY_TIME_STEP,
     DEPTH,
+    DEPTH_BY_MESH,
     LOST,
     PEAK,
     RUN_COLUMNS,
+    compared,
     element_edge,
-    quantities,
 )
 from ngwear.results.recorder import TORN, Recorder, fingerprint
 from ngwear.results.richardson import relative_errors
@@ -141,10 +143,11 @@ def combined_errors(
     folded = 0.0 if scene.folding is None else scene.folding.bound
     steps = {name: embedded[name] for name in RUN_COLUMNS if name in embedded}
     prescribed = {} if scene.wear.step == "jump" else steps
+    if DEPTH in levels and DEPTH_BY_MESH in levels and not prescribed:
+        levels[DEPTH] = levels[DEPTH_BY_MESH] + steps.get(DEPTH, 0.0)
+    by_mesh = {DEPTH_BY_MESH: levels.pop(DEPTH_BY_MESH)} if DEPTH_BY_MESH in levels else {}
     for name, error in levels.items():
         out[name] = error + folded + prescribed.get(name, 0.0) + embedded.get(f"{name[:-4]} {BY_TIME_STEP}", 0.0)
-    if DEPTH in levels and scene.wear.step == "jump":
-        out[DEPTH] = max(out[DEPTH], steps.get(DEPTH, 0.0))
     out |= with_parts(out)
     torn = embedded.get(TORN, 0.0)
     if LOST in levels:
@@ -153,7 +156,7 @@ def combined_errors(
     if scene.deactivation is not None and PEAK in levels:
         out[PEAK] = max(out[PEAK], relative_errors(mine, other)[PEAK])
     both = "mesh" if prescribed else "mesh and wear steps"
-    out |= {f"{name[:-4]} by {both} [-]": error for name, error in levels.items()}
+    out |= by_mesh | {f"{name[:-4]} by {both} [-]": error for name, error in levels.items()}
     out |= {f"{name[:-4]} by the wear steps alone [-]": error for name, error in steps.items()}
     if scene.folding is not None:
         out["stress by arms folded away [-]"] = folded
@@ -284,7 +287,7 @@ class _CoarserRuns:
             summary["warnings"].append(f"the coarser run gave up: {other['gave up']}; the error of the mesh is {says}")
             state_errors(summary, parts | with_parts(parts))
             return
-        embedded, mine = summary["error estimates"], quantities(recorder.rows)
+        embedded, mine = summary["error estimates"], compared(recorder.rows)
         ratio = edge_ratio(element_edge(recorder.rows), other.get("element edge [mm]", 0.0))
         known = combined_errors(self.scene, embedded, mine, other["reading"], ratio=ratio)
         left = [(other, "companion")]
@@ -329,7 +332,7 @@ def read_coarser_run(scene: Scene, file: Path) -> dict[str, Any] | None:
 def coarser_run_data(result: Result) -> dict[str, Any]:
     """Data of a completed run for its use as a coarser run: quantities of interest, element edge, and cost."""
     rows = result.records.rows
-    read = {"reading": quantities(rows), "element edge [mm]": element_edge(rows)}
+    read = {"reading": compared(rows), "element edge [mm]": element_edge(rows)}
     return read | {cost: result.summary[cost + unit] for cost, unit in COSTS}
 
 

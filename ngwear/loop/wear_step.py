@@ -14,6 +14,7 @@ from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.outline import Outline, polygon_area, polygon_moment
 from ngwear.geometry.recession import recede, receded, refuse_worn_through
+from ngwear.loop.carried_error import with_more_worn
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.state import LastWear, State
 from ngwear.scene.contact import Contact
@@ -88,13 +89,18 @@ class WearStep:
             lengths = [of.widths(scene.worn_edges) for of in (outline, wear_step.halfway)]
             wear_step.last_depth = share[:, None] * depth * lengths[0] / lengths[1]
         implicit = scene.wear.scheme == "implicit"
-        depth = wear_step.last_depth - wear_step.predicted_depth + wear_step.later_depth
-        for spec, weight, known in zip(scene.contacts, wear_step.end_weight, depth, strict=True):
+        for spec, weight in zip(scene.contacts, wear_step.end_weight, strict=True):
             contact = state.stage.contacts[spec.name]
             contact.compliance.Set(weight * sliding.worn_depth(spec.wear_rate) if implicit else 0.0)
-            if spec.wears:
-                contact.set_worn(known)
+        for name, known in wear_step.known_depth.items():
+            state.stage.contacts[name].set_worn(known)
         return wear_step
+
+    @property
+    def known_depth(self) -> dict[str, Array]:
+        """Depth that each wearing contact wears in the solve whatever its pressure, from the predicted outline [mm]."""
+        depth = self.last_depth - self.predicted_depth + self.later_depth
+        return {spec.name: depth[k] for k, spec in enumerate(self.state.stage.scene.contacts) if spec.wears}
 
     @property
     def halfway(self) -> Outline:
@@ -169,6 +175,17 @@ class WearStep:
         rate *= contact.wear_factor(profile.pressure)
         return profile, rate / contact.at_nodes(stage.elasticity.volume_ratio())
 
+    def _evened_out(self, error: Array, end: Array, shares: dict[str, Any]) -> Array:
+        """Area that the step wears less at the outline's points where the depth is too large by ``error`` [mm²]."""
+        less = np.zeros_like(error)
+        with with_more_worn(self.state.stage, self.known_depth, error) as found:
+            for k, spec in enumerate(self.state.stage.scene.contacts):
+                if found and spec.wears:
+                    profile, rate = self._rate(spec, shares)
+                    there = worn_share(self.state.contour, profile, rate * profile.weight)
+                    less += self.ways[k] * (end[k] - there)
+        return less
+
     def _book_depths(self, worn: Array, error: Array) -> None:
         """Add depth and error of a step at the points of the outline to those of the run [mm].
 
@@ -236,7 +253,10 @@ class WearStep:
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
             state.ledger.area_error += error
-        self._book_depths(share / width, err / width)
+        depth_error = err / width
+        if state.depths is not None:
+            depth_error -= self._evened_out(state.depths[1] + depth_error, end, shares) / width
+        self._book_depths(share / width, depth_error)
         phase.worn = LastWear(end=end, mean=mean, lengths=lengths, ways=ways)
         if scene.deactivation is not None:
             from ngwear.geometry.element_body import elements

@@ -42,6 +42,7 @@ def fingerprint(scene: Scene) -> str:
 POINTS_ALONG = 200  # number of points for the depth on a straight edge as long as the section
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
 LEAK, EDGE = "leak pressure [MPa]", "element edge in contact [mm]"
+WITHOUT_STEPS = "maximum depth without the error of the steps [mm]"
 PUSHES = 1e-6  # of the largest force: a push below is rounding
 TORN = "area lost in all by tearing [-]"  # part of the error of the total lost area
 LOST_AREAS = LOST | {Fate.WORN: "merging"}  # lost areas; merging of surface nodes changes the area a little
@@ -146,6 +147,7 @@ class Recorder:
             "error estimate of worn area [mm^2]": ledger.area_error,
             "maximum depth [mm]": float(depth.max()),
             "error estimate of maximum depth [mm]": abs(ledger.depth_error),
+            WITHOUT_STEPS: float(depth.max()) - ledger.depth_error,
         }
         for name in dict.fromkeys(scene.worn_edges):
             row[f"depth at {name} [mm]"] = float(depth[unworn.on((name,))].max())

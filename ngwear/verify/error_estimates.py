@@ -21,10 +21,10 @@ gaps outside, which scatter on the coarser mesh; told by the pressures inside it
 
 These are not blind: the bounds of the order, what counts as scatter and which coarsest run is left out
 (``ngwear.results.richardson``), the pin's order, what its contact's edge is told by, the share of what is torn, and
-that no less of the depth's error is stated than the jumps tell, were settled with these scenes' errors in view. So were
-the shaft's longest jump (with 0.12 its contact's width is at 0.35) and that friction is read along the last half (at
-the end alone, the seal that remembers is at 2.9 to 3.2). At other levels, and on other scenes, expect more to miss,
-widths of contacts and coarse levels first.
+that the steps' errors are taken off the depths before these are compared, were settled with these scenes' errors in
+view. So were the shaft's longest jump (with 0.12 its contact's width is at 0.35) and that friction is read along the
+last half (at the end alone, the seal that remembers is at 2.9 to 3.2). At other levels, and on other scenes, expect
+more to miss, widths of contacts and coarse levels first.
 
 Takes one to two hours of one core, most of it the finest runs of both seals and of the pin.
 """
@@ -37,7 +37,7 @@ from dataclasses import replace
 from ngwear.error_estimates.coarser_runs import COARSER, coarser_scene, combined_errors, scaled
 from ngwear.loop.result import Result
 from ngwear.loop.run import run as run_scene
-from ngwear.results.quantities_of_interest import quantities
+from ngwear.results.quantities_of_interest import compared, quantities
 from ngwear.results.richardson import relative_errors
 from ngwear.scene.scene import Scene
 from ngwear.sliding.pin import slide_pin
@@ -88,7 +88,7 @@ def of_leak() -> list[Check]:
 def stated_of(result: Result, scene: Scene) -> dict[str, float]:
     """What a run that ended would have stated beside coarser runs."""
     levels = [run_scene(coarser_scene(scene, COARSER**power), figures=False) for power in (1, 2)]
-    mine, other, coarsest = (quantities(r.records.rows) for r in (result, *levels))
+    mine, other, coarsest = (compared(r.records.rows) for r in (result, *levels))
     return combined_errors(scene, result.summary["error estimates"], mine, other, coarsest)
 
 

@@ -28,9 +28,11 @@ from ngwear.results.quantities_of_interest import (
     BY_FRICTION,
     BY_HALVED,
     DEPTH,
+    DEPTH_BY_MESH,
     LOST,
     PEAK,
     PLACES,
+    compared,
     element_edge,
     quantities,
 )
@@ -98,7 +100,7 @@ def test_a_run_states_the_error_of_all_that_is_read_off(finished):
     errors = json.loads((folder / "summary.json").read_text())["error estimates"]
     assert errors == result.summary["error estimates"]
     others = [companion.run_scene(coarser_scene(scene("implicit"), factor), figures=False) for factor in (2.0, 4.0)]
-    mine, *theirs = (quantities(r.recorder.rows) for r in (result, *others))
+    mine, *theirs = (compared(r.recorder.rows) for r in (result, *others))
     found = relative_errors(mine, *theirs)
     least = {PEAK: relative_errors(mine, theirs[0])[PEAK]}  # the scene may lose elements
     for name in ("maximum depth", "worn area", "peak pressure", "contact width", "friction force"):
@@ -147,8 +149,11 @@ def test_folded_arms_and_prescribed_steps_are_added_by_their_names():
         assert found[f"{name} by mesh and wear steps [-]"] == pytest.approx(0.04)
         assert found[f"{name} [-]"] == pytest.approx(0.04 + bound)
     assert found["maximum depth by the wear steps alone [-]"] == 0.02
-    jumpy = combined_errors(jumps, embedded | {DEPTH: 0.06}, mine, other)
-    assert jumpy[DEPTH] == pytest.approx(0.06), "what elements and jumps make up for is stated all the same"
+    less = [level | {DEPTH_BY_MESH: {"d": [d]}} for level, d in zip((mine, other), (1.0, 0.99), strict=True)]
+    apart = combined_errors(jumps, embedded, *less)
+    assert apart[DEPTH_BY_MESH] == pytest.approx(0.01)
+    assert apart[DEPTH] == pytest.approx(0.01 + 0.02 + bound), "the elements' error without the steps', and theirs"
+    assert apart["maximum depth by mesh and wear steps [-]"] == pytest.approx(0.03)
     each = combined_errors(replace(jumps, wear=replace(jumps.wear, step="each")), embedded, mine, other)
     assert each["maximum depth [-]"] == pytest.approx(0.04 + bound + 0.02)
     assert each["peak pressure [-]"] == pytest.approx(0.04 + bound)
@@ -198,7 +203,7 @@ def test_without_the_coarsest_the_error_is_of_first_order(finished, tmp_path):
         "the coarsest run gave up: no equilibrium; first order is assumed for the error of the mesh"
     ]
     ratio = edge_ratio(element_edge(result.recorder.rows), other["element edge [mm]"])
-    found = relative_errors(quantities(result.recorder.rows), other["reading"], ratio=ratio)
+    found = relative_errors(compared(result.recorder.rows), other["reading"], ratio=ratio)
     assert summary["error estimates"]["peak pressure [-]"] == pytest.approx(found["peak pressure [-]"])
 
 
@@ -222,7 +227,7 @@ def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finish
     folder, result = finished
     for name in (FILE, COARSEST):
         shutil.copy(folder / name, tmp_path / name)
-    mine, other = quantities(result.recorder.rows), json.loads((folder / FILE).read_text())["reading"]
+    mine, other = compared(result.recorder.rows), json.loads((folder / FILE).read_text())["reading"]
     errors = result.summary["error estimates"]
     ratio = edge_ratio(element_edge(result.recorder.rows), json.loads((folder / FILE).read_text())["element edge [mm]"])
     two = relative_errors(mine, other, ratio=ratio)[DEPTH] + errors["maximum depth by the wear steps alone [-]"]
