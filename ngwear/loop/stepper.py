@@ -197,7 +197,7 @@ class Stepper:
     def _anew(self, state: State) -> None:
         """Mount the part on this mesh, and settle the cycle."""
         first_cycle(state, lambda fraction: None, self._lost_elements)
-        self._settle_cycle(state)
+        self._settle_cycle(state, lowers=True)
 
     def _resolves(self, state: State) -> bool:
         """Settle the cycle on finer elements where the last solves ask for them; False if none do, or it fails."""
@@ -221,15 +221,15 @@ class Stepper:
         iterations = pass_stroke(state, index, stroke, sliding, steps=CYCLE_STEPS)
         return self._report(state, index, iterations, sliding)
 
-    def _settle_cycle(self, state: State, *, at_once: bool = False) -> None:
-        """Solve each stroke of the cycle once on the present outline, without wear; without load steps if at once."""
+    def _settle_cycle(self, state: State, *, at_once: bool = False, lowers: bool = False) -> None:
+        """Solve each stroke of the cycle once on the present outline, without wear, as ``solve_stroke``."""
         state.reports = []
         if state.stage.floats and state.stage.has_stick_slip:
             settle_last_stroke(state, at_once=at_once)
         for i, stroke in enumerate(self.scene.program.cycle):
             sliding = self._strokes(i, 0)
             wear_step = WearStep.begin(state, i, sliding)
-            iterations = solve_stroke(state, i, stroke, sliding, at_once=at_once)
+            iterations = solve_stroke(state, i, stroke, sliding, at_once=at_once, lowers=lowers or state.strokes > 0)
             wear_step.store_rates()
             state.reports.append(self._report(state, i, iterations, sliding))
 

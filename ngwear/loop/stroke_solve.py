@@ -45,11 +45,12 @@ def solve_stroke(
     *,
     plan: Plan = (),
     at_once: bool = False,
+    lowers: bool = True,
 ) -> int:
     """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
 
     ``plan`` is the plan of the step, for the memory. With ``at_once`` load steps are tried only if the last solve on
-    another mesh needed them.
+    another mesh needed them. With ``lowers`` a stroke whose friction the part does not bear is solved with less of it.
 
     Raises
     ------
@@ -74,8 +75,7 @@ def solve_stroke(
     if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
         if at_once and last is not None:
             raise NeedsLoadStepsError(f"the {stroke.name} stroke needs load steps", last)
-        starts = bool(stage.floats) and repeats == 0 and state.strokes == 0
-        path, fewest = _by_steps(state, index, stroke, work, hard=repeats > 1 or starts)
+        path, fewest = _by_steps(state, index, stroke, work, hard=repeats > 1 or (bool(stage.floats) and not lowers))
     state.work.add(work)
     rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
     shares = stage.shares(stroke)
@@ -206,8 +206,8 @@ def _by_steps(
     """Solve a stroke in load steps; return ``Phase.path`` and ``Phase.fewest``.
 
     The search ends at a larger load step if it is ``hard``: after a jump, because fewer strokes in one solve are
-    easier, and on the first meshes of a part with room to move, because mounting it anew is. Else a stroke whose
-    friction the part does not bear, as the wear has changed it, is solved with less of it.
+    easier, and on a new mesh on which a part with room to move may be mounted anew, because that is. Else a stroke
+    whose friction the part does not bear, as the wear or the strokes before have changed it, is solved with less of it.
 
     Raises
     ------
