@@ -27,10 +27,6 @@ if TYPE_CHECKING:  # modules of effects that a scene does not have are not impor
 
 Array = NDArray[np.float64]
 
-# Settled on the rod seal with 2.5, 4, 8 and 12 elements across: 48 to 81 solves, 0.94 to 0.10 % along the run
-# (``python tests/benchmarks/adaptive_against_fixed.py``).
-FALLS = 1.7  # change of the rate of depth over a step, whose square counts as an error: see depth_ratio
-
 
 @dataclass(frozen=True)
 class LastWear:
@@ -110,9 +106,8 @@ class Ledger:
         Area removed from the outline's polygon [mm²].
     moment : float
         First moment of that area about y = 0 [mm³]; 2 pi times it is the worn volume of a ring.
-    depth, rate, share : float
-        Maximum worn depth [mm]; its increase in the last step over the step's share of the program [mm]; that share
-        [-].
+    depth : float
+        Maximum worn depth [mm].
     area_error : float
         Sum of the embedded error estimates of worn area over all steps [mm²].
     depth_error : float
@@ -132,8 +127,6 @@ class Ledger:
     removed: float = 0.0
     moment: float = 0.0
     depth: float = 0.0
-    rate: float = 0.0
-    share: float = 0.0
     area_error: float = 0.0
     depth_error: float = 0.0
     remesh_jump: float = 0.0
@@ -146,22 +139,13 @@ class Ledger:
         return replace(self, lost=dict(self.lost))
 
     def depth_ratio(self, before: Ledger, share: float, *, left: float) -> float:
-        """Store a step's rate of depth; return its error of the final depth over its share of the program [-].
+        """A step's error of the final depth over its share of the program [-].
 
         The final depth is extrapolated with the rate of the step over the part of the program that is ``left``; both
-        shares are fractions of the program. The embedded estimate alone is not enough: it changes sign now and then,
-        and does not see the end of a contact that passes whole elements in one step. So the relative change of the rate
-        in the step, times ``FALLS`` and squared, is a second estimate; the larger one counts. The rates belong to the
-        middle of the two steps, so their change is scaled to the length of this step.
+        shares are fractions of the program.
         """
-        grown = self.depth - before.depth
-        self.rate, self.share = grown / share, share
-        end = self.depth + self.rate * left
-        if end <= 0:
-            return 0.0
-        less, more = sorted((before.rate, self.rate))
-        falls = FALLS * (1 - less / more) * 2 * share / (before.share + share) if less > 0 else 0.0
-        return max(abs(self.depth_error - before.depth_error) / end / share, falls**2)
+        end = self.depth + (self.depth - before.depth) / share * left
+        return abs(self.depth_error - before.depth_error) / end / share if end > 0 else 0.0
 
 
 @dataclass
