@@ -113,6 +113,8 @@ class Ledger:
     depth_error : float
         Change of the maximum depth if the sum of the signed error estimates is subtracted at each point [mm]; positive
         if the depth is overestimated. With ``wear.step = "jump"`` only steps of several cycles count.
+    step_error : float
+        Sum of what each step by itself adds to that, as it is at the end of the step [mm].
     remesh_jump : float
         Largest relative change of the section's area by remeshing [-].
     remeshes : int
@@ -129,6 +131,7 @@ class Ledger:
     depth: float = 0.0
     area_error: float = 0.0
     depth_error: float = 0.0
+    step_error: float = 0.0
     remesh_jump: float = 0.0
     remeshes: int = 0
     lost: dict[Fate, float] = field(default_factory=lambda: dict.fromkeys(Fate, 0.0))
@@ -145,7 +148,7 @@ class Ledger:
         shares are fractions of the program.
         """
         end = self.depth + (self.depth - before.depth) / share * left
-        return abs(self.depth_error - before.depth_error) / end / share if end > 0 else 0.0
+        return abs(self.step_error - before.step_error) / end / share if end > 0 else 0.0
 
 
 @dataclass

@@ -175,39 +175,49 @@ class WearStep:
         rate *= contact.wear_factor(profile.pressure)
         return profile, rate / contact.at_nodes(stage.elasticity.volume_ratio())
 
-    def _evened_out(self, error: Array, end: Array, shares: dict[str, Any]) -> Array:
-        """Area that the step wears less at the outline's points where the depth is too large by ``error`` [mm²]."""
-        less = np.zeros_like(error)
-        with with_more_worn(self.state.stage, self.known_depth, error) as found:
-            for k, spec in enumerate(self.state.stage.scene.contacts):
+    def _carried(self, error: Array, end: Array, shares: dict[str, Any]) -> Array:
+        """What is left, at the end of the step, of a depth error at the outline's points [mm].
+
+        Where the depth is too large, the contacts wear less in the step. ``end`` are the wear rates at its end.
+        """
+        if not error.any():
+            return error
+        state, left = self.state, error.copy()
+        width = self.halfway.widths(state.stage.scene.worn_edges)
+        with with_more_worn(state.stage, self.known_depth, error) as found:
+            for k, spec in enumerate(state.stage.scene.contacts):
                 if found and spec.wears:
                     profile, rate = self._rate(spec, shares)
-                    there = worn_share(self.state.contour, profile, rate * profile.weight)
-                    less += self.ways[k] * (end[k] - there)
-        return less
+                    there = worn_share(state.contour, profile, rate * profile.weight)
+                    left += self.ways[k] * (there - end[k]) / width
+        return left
 
-    def _book_depths(self, worn: Array, error: Array) -> None:
+    def _book_depths(self, worn: Array, error: Array, end: Array, shares: dict[str, Any]) -> None:
         """Add depth and error of a step at the points of the outline to those of the run [mm].
 
         With ``wear.step = "jump"`` a step of one cycle has no error: only jumps count. The ledger adds the increase of
         the maximum depth over the points of this step, because the points of a new mesh may miss the deepest place.
         """
-        state = self.state
-        asked = state.stage.scene.wear.step == "jump" and self.sliding.repeats <= 1
-        step = np.stack([worn, 0.0 * error if asked else error])
-        before = np.zeros_like(step) if state.depths is None else state.depths
-        state.depths = before + step
-        (depth, exact), (last, last_exact) = ((d.max(), (d - e).max()) for d, e in (state.depths, before))
-        state.ledger.depth += float(depth - last)
-        state.ledger.depth_error += float((depth - exact) - (last - last_exact))
+        state, ledger = self.state, self.state.ledger
+        if state.stage.scene.wear.step == "jump" and self.sliding.repeats <= 1:
+            error = np.zeros_like(error)
+        last, before = np.zeros((2, len(worn))) if state.depths is None else state.depths
+        carried = self._carried(before, end, shares)
+        off = self._carried(before + error, end, shares) if error.any() else carried
+        depth = last + worn
+        state.depths = np.stack([depth, off])
+        without = float((depth - off).max())
+        ledger.depth += float(depth.max() - last.max())
+        ledger.depth_error += float(depth.max() - without) - float(last.max() - (last - before).max())
+        ledger.step_error += float((depth - carried).max()) - without
 
     def apply(self) -> bool:
         """Remove the worn area from the outline; return whether its error is known.
 
         The error of the area is the difference of the depth from that by the trapezoidal rule at the nodes of the mesh,
         times their lengths, summed over the outline in absolute value; the shape between the nodes does not depend on
-        the step. The error of the depth at a point is the estimate of ``wear.backward_differences`` with its sign, so
-        that errors of opposite sign cancel.
+        the step. The error of the depth at a point is the estimate of ``wear.backward_differences`` with its sign, and
+        what contacts have left of the errors of the steps before.
 
         Raises
         ------
@@ -253,10 +263,7 @@ class WearStep:
         phase.error = error / float(share.sum()) if known and share.sum() > 0 else math.inf
         if known:
             state.ledger.area_error += error
-        depth_error = err / width
-        if state.depths is not None:
-            depth_error -= self._evened_out(state.depths[1] + depth_error, end, shares) / width
-        self._book_depths(share / width, depth_error)
+        self._book_depths(share / width, err / width, end, shares)
         phase.worn = LastWear(end=end, mean=mean, lengths=lengths, ways=ways)
         if scene.deactivation is not None:
             from ngwear.geometry.element_body import elements

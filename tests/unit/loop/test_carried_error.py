@@ -61,12 +61,10 @@ def test_pressures_with_more_worn_are_those_of_another_solve(worn_seal):
 def test_where_too_much_is_worn_less_is_worn(worn_seal):
     state, _, wear_step = worn_seal
     more = bump(state)
-    spec, width = state.stage.scene.contacts[0], wear_step.halfway.widths(state.stage.scene.worn_edges)
+    spec = state.stage.scene.contacts[0]
     profile, rate = wear_step._rate(spec, {})
     end = np.array([worn_share(state.contour, profile, rate * profile.weight)])
-    less = wear_step._evened_out(more, end, {}) / width
     most = int(more.argmax())
-    assert 0 < less[most] < more[most]
-    assert wear_step._evened_out(-more, end, {})[most] < 0
-    none = wear_step._evened_out(0 * more, end, {}) / width
-    assert np.abs(none).max() < 0.01 * less[most]
+    assert 0 < wear_step._carried(more, end, {})[most] < 0.999 * more[most]
+    assert wear_step._carried(-more, end, {})[most] > -0.999 * more[most]
+    assert (wear_step._carried(0 * more, end, {}) == 0).all()

@@ -45,7 +45,7 @@ def test_the_depths_error_shortens_a_step_that_areas_would_let_grow():
 
 def test_a_steps_error_of_depth_is_told_by_its_share_of_the_program():
     """Half done, 10 deep, and 2 deep a tenth: 20 at the end; 0.1 off within a tenth is 0.05 in all."""
-    before, after = Ledger(depth=8.0, depth_error=-0.05), Ledger(depth=10.0, depth_error=0.05)
+    before, after = Ledger(depth=8.0, step_error=-0.05), Ledger(depth=10.0, step_error=0.05)
     assert after.depth_ratio(before, 0.1, left=0.5) == pytest.approx(0.1 / 20 / 0.1)
     assert Ledger().depth_ratio(Ledger(), 0.1, left=0.9) == 0.0
 
