@@ -321,12 +321,14 @@ class _CoarserRuns:
 
 
 def read_coarser_run(scene: Scene, file: Path) -> dict[str, Any] | None:
-    """Contents of a coarser run's file; None if there is none, or it belongs to another scene."""
+    """Contents of a coarser run's file; None if there is none, or it is of another scene or an earlier version."""
     try:
         left = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return left if isinstance(left, dict) and left.get("scene") == fingerprint(scene) else None
+    if not isinstance(left, dict) or left.get("scene") != fingerprint(scene):
+        return None
+    return left if "gave up" in left or DEPTH_BY_MESH in left.get("reading", {}) else None
 
 
 def coarser_run_data(result: Result) -> dict[str, Any]:
