@@ -241,9 +241,7 @@ class FluidPressure(EdgePressure):
         fluid has wetted and that still touches, both press. Where none holds it, the fluid ends at the one that is
         pressed hardest.
         """
-        bears = sum((fluid.pressure.Get() * fluid.shares for fluid in self.others), self.pressure.Get() * self.shares)
-        for contact in self.contacts:
-            bears[contact.positions] = np.maximum(bears[contact.positions], contact.edge_peaks())
+        bears = self._bears()
         for k, (_, path) in enumerate(self.paths):
             stop = np.flatnonzero(stops[k])
             stop = stop[stop >= self._passed[k]]
@@ -257,11 +255,35 @@ class FluidPressure(EdgePressure):
                 stop = stop[stop >= self._passed[k]]
                 if len(stop) == 0:
                     continue
-            most = np.maximum(bears[path], np.append(bears[path[1:]], 0.0))[stop]
-            holds = stop[most >= self.holding * self.pressure.Get()]
-            last = int(holds[0]) if len(holds) else int(stop[most.argmax()])
+            last = self._held_at(bears[path], stop, self.holding)
             if last > stop[0]:
                 self._passed[k] = last
+
+    def _bears(self) -> np.ndarray:
+        """What presses each mesh edge, contact or fluid [MPa]."""
+        bears = sum((fluid.pressure.Get() * fluid.shares for fluid in self.others), self.pressure.Get() * self.shares)
+        for contact in self.contacts:
+            bears[contact.positions] = np.maximum(bears[contact.positions], contact.edge_peaks())
+        return np.asarray(bears)
+
+    def _held_at(self, bears: np.ndarray, stop: np.ndarray, holding: float) -> int:
+        """Which of the edges ``stop`` of a way holds the fluid, if it takes ``holding`` of its pressure."""
+        most = np.maximum(bears, np.append(bears[1:], 0.0))[stop]
+        holds = stop[most >= holding * self.pressure.Get()]
+        return int(holds[0]) if len(holds) else int(stop[most.argmax()])
+
+    def comes_further(self, holding: float) -> bool:
+        """Whether the fluid would come further into a contact, in the present state, if holding it took more.
+
+        ``holding`` is the share of the fluid's pressure that a contact would have to carry.
+        """
+        bears = self._bears()
+        for (_, path), stops, passed in zip(self.paths, self.stops(), self._passed, strict=True):
+            stop = np.flatnonzero(stops)
+            stop = stop[stop >= passed]
+            if len(stop) and self._held_at(bears[path], stop, holding) > stop[0]:
+                return self.pressure.Get() > 0
+        return False
 
     @property
     def passed_lengths(self) -> np.ndarray:

@@ -1,15 +1,15 @@
 """Error by a fluid that a contact just holds: the next cycle is solved again with the fluid let in, without wear.
 
-A contact that carries hardly more than the fluid's pressure holds it on one mesh and not on another one
-(``ngwear.effects.blow_by.barely_held``). The solve is repeated with fluids that only contacts hold which carry more
-than their pressure by what contact pressures err by; the error is the whole change.
+A contact that carries hardly more than the fluid's pressure holds it on one mesh and not on another one, and where a
+fluid has come into a contact, the place at which it ends differs. The solve is repeated with fluids that only contacts
+hold which carry more than their pressure by what contact pressures err by (``ngwear.effects.blow_by.ERRS``); the error
+is the whole change.
 """
 
 from __future__ import annotations
 
 from ngwear.effects.blow_by import ERRS
 from ngwear.loop.cycle_quantities import read_cycle
-from ngwear.loop.solution_checks import BARELY_HELD
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.time_step_error import next_cycle
@@ -28,9 +28,9 @@ def fluid_errors(state: State) -> dict[str, float]:
     ConvergenceError
         If a stroke of that cycle has no equilibrium.
     """
-    fluids = list(state.stage.fluids.values())
-    if not any(found.key.startswith(BARELY_HELD) for report in state.reports for found in report.findings):
+    if not any(report.comes_further for report in state.reports):
         return {}
+    fluids = list(state.stage.fluids.values())
     held = [fluid.holding for fluid in fluids]
     try:
         mine = read_cycle(next_cycle(state))

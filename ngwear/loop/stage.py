@@ -191,6 +191,14 @@ class Stage:
 
         return tuple(ridge for fluid in self.fluids.values() for ridge in barely_held(fluid))
 
+    def fluid_may_come_further(self) -> bool:
+        """Whether a fluid would come further into a contact, within what contact pressures err by."""
+        if not self.fluids:
+            return False
+        from ngwear.effects.blow_by import ERRS
+
+        return any(fluid.comes_further(1 + ERRS) for fluid in self.fluids.values())
+
     @property
     def leaking(self) -> list[FluidPressure]:
         """The fluids if the scene asks for the leak pressure, else none."""

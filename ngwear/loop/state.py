@@ -284,6 +284,8 @@ class StrokeReport:
         What a reader must know of this solve (``ngwear.loop.solution_checks``).
     blow_by : tuple of BlowBy
         Fluids that no contact holds.
+    comes_further : bool
+        Whether a fluid would come further into a contact, within what contact pressures err by.
     turned : float
         Angle by which a part with room to move has turned [degrees].
     trapped : float or None
@@ -310,5 +312,6 @@ class StrokeReport:
     section: dict[str, NDArray[np.generic]] = field(default_factory=dict)
     findings: tuple[Finding, ...] = ()
     blow_by: tuple[BlowBy, ...] = ()
+    comes_further: bool = False
     turned: float = 0.0
     trapped: float | None = None

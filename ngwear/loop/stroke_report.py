@@ -46,6 +46,7 @@ def stroke_report(
         leaks=any(fluid.leaks for fluid in stage.fluids.values()),
         leak_pressure=stage.leak_pressure(),
         blow_by=stage.blow_by(),
+        comes_further=stage.fluid_may_come_further(),
         contour=state.contour,
         ledger=state.ledger.copy(),
         cells=state.cells,
