@@ -29,6 +29,9 @@ REVERSED = (1.0, 0.5, 0.25)  # times its own, before the other loads, if it fail
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
 NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched,
 NEARER = 1 / 4  # and of what it did not bear on the way, if that is nearer
+# Times the angle of the step before, and degrees: a part that turns by more in one step has rolled on at once to another
+# equilibrium. How far it goes then differs from mesh to mesh.
+AT_ONCE, TURNS = 4.0, 2.0
 LEAST = 1 / 64  # of its friction: a part that does not bear this bears none
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
 
@@ -172,16 +175,23 @@ def lower_friction(
             raise error
         over = _never  # the squeeze alone wrinkles it
     begun, step = goal, min(NEAREST, NEARER * reached) if reached > 0 else NEAREST
+    turned = np.inf
     while not over(problem):
-        held = goal
+        held, last = goal, Start.of(stage)
         if held == 1.0:
             return work
-        goal = min(1.0, held + step)
+        goal, before_turning = min(1.0, held + step), problem.turned()
         try:
             work.add(advance(problem, {name: goal * slip for name, slip in slips.items()}, StepOptions(smallest=1.0)))
         except ConvergenceError as nearer:  # the state is the last one with which it slides
             log.info("%s", nearer)
             break
+        turns = abs(problem.turned() - before_turning)
+        if turns > max(AT_ONCE * turned, TURNS):
+            log.info("turns by %.1f° at once", turns)
+            last.restore(stage)
+            break
+        turned = turns
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
     # A surface that has creased does not come back by itself: then from the beginning, at last by a way that was gone.
     ways = ((BELOW * held, False), (BELOW * held, True), (BELOW**2 * held, True), (begun, True))
