@@ -293,11 +293,14 @@ class FluidPressure(EdgePressure):
 
     @property
     def passed(self) -> np.ndarray:
-        """Reference places up to which the fluid has lifted contacts, one a way; nan: none; shape (2, 2) [mm]."""
+        """Reference places up to which the fluid has lifted contacts, one a way; nan: none; shape (2, 2) [mm].
+
+        Where it has lifted all of a way's contacts, the place is that of the last mesh edge.
+        """
         places = np.full((2, 2), np.nan)
         for k, (_, path) in enumerate(self.paths):
             if self._passed[k] > 0:
-                places[k] = self._middles[path[self._passed[k]]]
+                places[k] = self._middles[path[min(self._passed[k], len(path) - 1)]]
         return places
 
     @passed.setter

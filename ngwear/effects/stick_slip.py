@@ -101,6 +101,16 @@ class StickSlip(Friction):
     def commit(self, strain: Array) -> None:
         self._count_from_here()
 
+    @property
+    def counted(self) -> tuple[float, float | Array]:
+        """Heat and slip since the stroke began, up to the last equilibrium."""
+        return self._spent, self._slid
+
+    def go_back(self, counted: tuple[float, float | Array]) -> None:
+        """Count on from the present state, an earlier equilibrium of the stroke at which so much was ``counted``."""
+        self._count_from_here()
+        self._spent, self._slid = counted
+
     def _count_from_here(self) -> None:
         """Count the slip of the next step from the present state."""
         self._spent, self._slid = self.heat(0.0), self.slid()

@@ -29,9 +29,6 @@ REVERSED = (1.0, 0.5, 0.25)  # times its own, before the other loads, if it fail
 FIRST, SMALLEST = 1 / 8, 1 / 64  # load step with which that begins, and with which it is given up
 NEAREST = 1 / 16  # of the friction's limit: how near to the most that it bears the state is searched,
 NEARER = 1 / 4  # and of what it did not bear on the way, if that is nearer
-# Times the angle of the step before, and degrees: a part that turns by more in one step has rolled on at once to another
-# equilibrium. How far it goes then differs from mesh to mesh.
-AT_ONCE, TURNS = 4.0, 2.0
 LEAST = 1 / 64  # of its friction: a part that does not bear this bears none
 WHY = {Outcome.ROLLED: ROLLS, Outcome.CREASED: CREASES}
 
@@ -105,22 +102,33 @@ def _is_crushed(problem: Problem) -> bool:
 
 @dataclass(frozen=True)
 class Start:
-    """The beginning of a stroke: equilibrium, loads, and what the fluids have done."""
+    """A state to go back to: equilibrium, loads, what the fluids have done, and what stick and slip have counted."""
 
     vector: Array
     loads: Loads
     passed: Array | None
     left: Array | None
+    counted: tuple[tuple[float, float | Array], ...]
 
     @classmethod
     def of(cls, stage: Stage) -> Start:
         """The present state."""
         vector = stage.problem.state.vec.FV().NumPy().copy()
-        return cls(vector, stage.problem.get_loads(), stage.fluid_passed(), stage.fluid_left())
+        counted = tuple(friction.counted for friction in stage.sticking.values())
+        return cls(vector, stage.problem.get_loads(), stage.fluid_passed(), stage.fluid_left(), counted)
 
     def restore(self, stage: Stage) -> None:
-        """Go back to it."""
+        """Go back to it and begin the stroke there."""
         stage.begin(self.vector)
+        self._set(stage)
+
+    def put_back(self, stage: Stage) -> None:
+        """Go back to it within the stroke."""
+        self._set(stage)
+        for friction, counted in zip(stage.sticking.values(), self.counted, strict=True):
+            friction.go_back(counted)
+
+    def _set(self, stage: Stage) -> None:
         stage.problem.set_loads(self.loads)
         stage.let_fluid_pass(self.passed)
         stage.leave_fluid(self.left)
@@ -175,35 +183,38 @@ def lower_friction(
             raise error
         over = _never  # the squeeze alone wrinkles it
     begun, step = goal, min(NEAREST, NEARER * reached) if reached > 0 else NEAREST
-    turned = np.inf
+    slid: list[tuple[float, Start]] = []  # states in which it slides, by the share of friction
     while not over(problem):
-        held, last = goal, Start.of(stage)
+        held = goal
+        slid.append((held, Start.of(stage)))
         if held == 1.0:
             return work
-        goal, before_turning = min(1.0, held + step), problem.turned()
+        goal = min(1.0, held + step)
         try:
             work.add(advance(problem, {name: goal * slip for name, slip in slips.items()}, StepOptions(smallest=1.0)))
         except ConvergenceError as nearer:  # the state is the last one with which it slides
             log.info("%s", nearer)
             break
-        turns = abs(problem.turned() - before_turning)
-        if turns > max(AT_ONCE * turned, TURNS):
-            log.info("turns by %.1f° at once", turns)
-            last.restore(stage)
-            break
-        turned = turns
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
-    # A surface that has creased does not come back by itself: then from the beginning, at last by a way that was gone.
-    ways = ((BELOW * held, False), (BELOW * held, True), (BELOW**2 * held, True), (begun, True))
-    for share, from_start in ways:
+    # What has creased, or rolled on, does not come back by itself: so from the last state with less friction in one step,
+    # as on the way up; else back from the last one, or from the beginning, at last by a way that was gone.
+    at_once, in_steps = StepOptions(smallest=1.0), StepOptions(first=0.5, smallest=SMALLEST)
+    ways: list[tuple[float, StepOptions | None, Start | None]] = [(BELOW * held, in_steps, None)]
+    if slid:
+        ways = [(BELOW * held, in_steps, slid[-1][1])]
+        ways[:0] = [(BELOW * held, at_once, state) for share, state in slid if share <= BELOW * held][-1:]
+    ways += [(share, None, None) for share in (BELOW * held, BELOW**2 * held, begun)]
+    for share, options, state in ways:
         if share * before < LEAST:
             raise error
         held, less = share, {name: share * slip for name, slip in slips.items()}
+        if state is not None:
+            state.put_back(stage)
         try:
-            if from_start:
+            if options is None:
                 work.add(_with_less_friction(stage, target, less, start, before_others=before_others))
             else:
-                work.add(advance(problem, less, StepOptions(first=0.5, smallest=SMALLEST)))
+                work.add(advance(problem, less, options))
             break
         except ConvergenceError as failed:
             log.info("%s", failed)

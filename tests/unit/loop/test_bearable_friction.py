@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import ngwear as nw
-from ngwear.equilibrium.newton import Outcome, Report
-from ngwear.equilibrium.stepping import Work
+from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, iterate
+from ngwear.equilibrium.stepping import Work, advance
 from ngwear.errors import ConvergenceError
 from ngwear.loop import bearable_friction
 from ngwear.loop.bearable_friction import BELOW, Start, is_too_much, lower_friction
@@ -81,6 +81,20 @@ def test_friction_that_the_part_bears_is_brought_on_again():
     assert stage.problem.get_loads()["rod slip"] == target["rod slip"]
     friction, load = np.abs(stage.forces()["rod friction"]), np.abs(stage.forces()["rod"])
     assert friction[0] == pytest.approx(0.02 * load[1], rel=1e-3)
+    goes_back_to(stage, Start.of(stage), {"rod slip": 0.5 * target["rod slip"]})
+
+
+def goes_back_to(stage, there, loads):
+    """A state within the stroke is an equilibrium again after others, and so much has slipped as there."""
+    counted = [(friction.heat(0.0), friction.slid()) for friction in stage.sticking.values()]
+    advance(stage.problem, loads)
+    there.put_back(stage)
+    again = [(friction.heat(0.0), friction.slid()) for friction in stage.sticking.values()]
+    assert again
+    for (heat, slid), (before, slid_before) in zip(again, counted, strict=True):
+        assert heat == pytest.approx(before, abs=1e-9)
+        assert slid == pytest.approx(slid_before, abs=1e-9)
+    assert iterate(stage.problem, NewtonOptions()).iterations <= 1
 
 
 def tries(stage, monkeypatch, *, stroke, reached, comes_on):
@@ -159,6 +173,33 @@ def test_a_reversal_is_tried_without_friction_and_then_with_its_own_before_the_o
     assert tried[:3] == [(0.0, False), (1.0, True), (0.5, True)]
     assert tried[-1] == (0.5, True)
     assert unlowered.friction_shares == {"inward": (0.5, bearable_friction.ROLLS)}
+
+
+def test_what_it_bears_less_of_is_taken_from_the_way_up(unlowered, monkeypatch):
+    """What the part does with more friction than that leaves no trace: here the state counts the friction's steps."""
+    problem, target = unlowered.problem, unlowered.stroke_loads(unlowered.scene.program.cycle[0])
+    full, vector = target["rod slip"], problem.state.vec.FV().NumPy()
+
+    def comes_on(problem, slips, options):
+        if slips["rod slip"] / full > 0.8:
+            raise ConvergenceError("no more")
+        problem.set_loads(slips)
+        vector[:] += 1.0
+        return Work()
+
+    def begins(stage, target, slips, start, *, before_others):
+        start.restore(stage)
+        problem.set_loads(slips)
+        return Work()
+
+    kept, start = vector.copy(), Start.of(unlowered)
+    monkeypatch.setattr(bearable_friction, "_with_less_friction", begins)
+    monkeypatch.setattr(bearable_friction, "advance", comes_on)
+    problem.set_loads({"rod slip": full})
+    lower_friction(unlowered, "outward", target, ConvergenceError("rolls", Report(Outcome.ROLLED)), start)
+    assert unlowered.friction_shares["outward"][0] == pytest.approx(BELOW * 0.75)  # from 1/2, four steps of 1/16
+    assert vector - kept == pytest.approx(3.0)  # two steps up to 5/8, and one to what it slides with
+    vector[:] = kept
 
 
 def test_a_step_that_is_rejected_leaves_the_shares_as_they_were(stage):

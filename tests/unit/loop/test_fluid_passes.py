@@ -10,7 +10,6 @@ import ngwear as nw
 from ngwear.loop import fluid_let_in
 from ngwear.loop.fluid_let_in import fluid_errors
 from ngwear.loop.run import run
-from ngwear.loop.solution_checks import BARELY_HELD, Finding
 from ngwear.results.quantities_of_interest import BY_FLUID, DEPTH, PEAK
 
 ROD, BORE = 22.0, 30.0
@@ -109,6 +108,19 @@ def test_a_warning_is_on_the_screen_when_a_solve_shows_it_first(cup, capsys):
     assert not capsys.readouterr().err
 
 
+def test_a_fluid_that_has_passed_all_contacts_of_a_way_is_at_its_end(cup):
+    _, state = cup
+    fluid = state.stage.fluids["fluid"]
+    kept = fluid.passed
+    edges = [len(path) for _, path in fluid.paths]
+    fluid._passed = list(edges)
+    ends = fluid.passed
+    fluid.passed = ends
+    assert fluid._passed == [count - 1 for count in edges]
+    assert (fluid.passed == ends).all()
+    fluid.passed = kept
+
+
 def test_a_stage_takes_the_places_to_its_own_mesh(cup):
     _, state = cup
     stage, places = state.stage, state.phases[2].passed
@@ -125,7 +137,7 @@ def test_the_error_by_a_fluid_that_is_just_held_is_what_it_changes_if_let_in(cup
     kept, seen, whole = state.saved(), [], fluid_let_in.read_cycle
     monkeypatch.setattr(fluid_let_in, "read_cycle", lambda at: seen.append(at.reports) or whole(at))
     assert fluid_errors(state) == {}
-    held = replace(state.reports[1], findings=(Finding(f"{BARELY_HELD} hold 0.5", 1.0, ""),))
+    held = replace(state.reports[1], comes_further=True)
     state.reports = [state.reports[0], held, *state.reports[2:]]
     monkeypatch.setattr(fluid_let_in, "ERRS", 3.0)  # more than the shoulder carries
     errors = fluid_errors(state)
