@@ -8,6 +8,7 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.equilibrium.linear import RESIDUAL_TOLERANCE
 from ngwear.loop.stage import Stage
 
 Array = NDArray[np.float64]
@@ -17,7 +18,7 @@ Array = NDArray[np.float64]
 def with_more_worn(stage: Stage, depth: Mapping[str, Array], more: Array) -> Iterator[bool]:
     """Within it, the part is in the equilibrium that it has with ``more`` depth worn; True if one is found.
 
-    To first order: one correction of Newton's method by the tangent of the last solve. ``depth`` has the depths that
+    False without a tangent, or with one that is singular. To first order: one correction of Newton's method by the tangent of the last solve. ``depth`` has the depths that
     contacts have worn before the solve, by name, and ``more`` is of shape (n,), both at the points of the outline [mm].
     """
     problem, solver = stage.problem, stage.problem.solver
@@ -31,9 +32,9 @@ def with_more_worn(stage: Stage, depth: Mapping[str, Array], more: Array) -> Ite
         if solver is not None:
             with problem.threads():
                 problem.residual(residual)
-                solver.solve(residual, correction)
+                found = solver.solve(residual, correction) < RESIDUAL_TOLERANCE
+        if found:
             vector.data -= correction
-            found = bool(np.isfinite(correction.FV().NumPy()).all())
         yield found
     finally:
         vector.data = kept

@@ -68,3 +68,12 @@ def test_where_too_much_is_worn_less_is_worn(worn_seal):
     assert 0 < wear_step._carried(more, end, {})[most] < 0.999 * more[most]
     assert wear_step._carried(-more, end, {})[most] > -0.999 * more[most]
     assert (wear_step._carried(0 * more, end, {}) == 0).all()
+
+
+def test_a_tangent_that_is_singular_tells_nothing(worn_seal, monkeypatch):
+    state, _, wear_step = worn_seal
+    vector = state.stage.problem.state.vec.FV().NumPy().copy()
+    monkeypatch.setattr(state.stage.problem.solver, "solve", lambda right_side, solution: 1e-3)
+    with with_more_worn(state.stage, wear_step.known_depth, bump(state)) as found:
+        assert not found
+        assert (state.stage.problem.state.vec.FV().NumPy() == vector).all()
