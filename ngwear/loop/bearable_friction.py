@@ -194,6 +194,7 @@ def lower_friction(
             work.add(advance(problem, {name: goal * slip for name, slip in slips.items()}, StepOptions(smallest=1.0)))
         except ConvergenceError as nearer:  # the state is the last one with which it slides
             log.info("%s", nearer)
+            why = reason(nearer) if why == NO_STATE else why
             break
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
     # What has creased, or rolled on, does not come back by itself: so from the last state with less friction in one step,
