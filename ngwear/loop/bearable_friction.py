@@ -197,8 +197,8 @@ def lower_friction(
             why = reason(nearer) if why == NO_STATE else why
             break
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
-    # What has creased, or rolled on, does not come back by itself: so from the last state with less friction in one step,
-    # as on the way up; else back from the last one, or from the beginning, at last by a way that was gone.
+    # What has creased, or rolled on, does not come back by itself: so from the last state with less friction in one
+    # step, as on the way up; else back from the last one, or from the beginning, at last by a way that was gone.
     at_once, in_steps = StepOptions(smallest=1.0), StepOptions(first=0.5, smallest=SMALLEST)
     ways: list[tuple[float, StepOptions | None, Start | None]] = [(BELOW * held, in_steps, None)]
     if slid:

@@ -18,8 +18,9 @@ Array = NDArray[np.float64]
 def with_more_worn(stage: Stage, depth: Mapping[str, Array], more: Array) -> Iterator[bool]:
     """Within it, the part is in the equilibrium that it has with ``more`` depth worn; True if one is found.
 
-    False without a tangent, or with one that is singular. To first order: one correction of Newton's method by the tangent of the last solve. ``depth`` has the depths that
-    contacts have worn before the solve, by name, and ``more`` is of shape (n,), both at the points of the outline [mm].
+    False without a tangent, or with one that is singular. To first order: one correction of Newton's method by the
+    tangent of the last solve. ``depth`` has the depths that contacts have worn before the solve, by name, and ``more``
+    is of shape (n,), both at the points of the outline [mm].
     """
     problem, solver = stage.problem, stage.problem.solver
     vector = problem.state.vec
