@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 
@@ -183,7 +183,7 @@ def lower_friction(
             raise error
         over = _never  # the squeeze alone wrinkles it
     begun, step = goal, min(NEAREST, NEARER * reached) if reached > 0 else NEAREST
-    slid: list[tuple[float, Start]] = []  # states in which it slides, by the share of friction
+    slid: list[tuple[float, Start]] = []  # states in which it slides, and the shares of friction
     while not over(problem):
         held = goal
         slid.append((held, Start.of(stage)))
@@ -197,15 +197,7 @@ def lower_friction(
             why = reason(nearer) if why == NO_STATE else why
             break
     before, _ = stage.friction_shares.get(stroke, (1.0, ""))  # found on coarser elements
-    # What has creased, or rolled on, does not come back by itself: so from the last state with less friction in one
-    # step, as on the way up; else back from the last one, or from the beginning, at last by a way that was gone.
-    at_once, in_steps = StepOptions(smallest=1.0), StepOptions(first=0.5, smallest=SMALLEST)
-    ways: list[tuple[float, StepOptions | None, Start | None]] = [(BELOW * held, in_steps, None)]
-    if slid:
-        ways = [(BELOW * held, in_steps, slid[-1][1])]
-        ways[:0] = [(BELOW * held, at_once, state) for share, state in slid if share <= BELOW * held][-1:]
-    ways += [(share, None, None) for share in (BELOW * held, BELOW**2 * held, begun)]
-    for share, options, state in ways:
+    for share, options, state in _ways(slid, held, begun):
         if share * before < LEAST:
             raise error
         held, less = share, {name: share * slip for name, slip in slips.items()}
@@ -224,6 +216,22 @@ def lower_friction(
     stage.friction_shares[stroke] = (held * before, why)
     log.info("stroke '%s': friction %s; %.0f %% of it act", stroke, why, 100 * held * before)
     return work
+
+
+def _ways(
+    slid: list[tuple[float, Start]], held: float, begun: float
+) -> Iterator[tuple[float, StepOptions | None, Start | None]]:
+    """Shares of the friction to slide with, and by which steps from which state; None: from the stroke's beginning.
+
+    What has creased, or rolled on, does not come back by itself: so from the last state with less friction in one step,
+    as on the way up; else back from the last state, or from the beginning, at last by a way that was gone.
+    """
+    for _, state in [known for known in slid if known[0] <= BELOW * held][-1:]:
+        yield BELOW * held, StepOptions(smallest=1.0), state
+    for _, state in slid[-1:]:
+        yield BELOW * held, StepOptions(first=0.5, smallest=SMALLEST), state
+    for share in (BELOW * held, BELOW**2 * held, begun):
+        yield share, None, None
 
 
 def _with_less_friction(stage: Stage, target: Loads, slips: Loads, start: Start, *, before_others: bool) -> Work:
