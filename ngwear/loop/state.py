@@ -160,7 +160,8 @@ class State:
     are empty unless damage accumulates over cycles. ``fine``, shape (k, 3), are places and the element edges that
     solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
     ``mesh_errors`` are relative errors by the mesh, by name, and ``first_wear`` [N] is the largest wear per cycle when
-    they were computed (``ngwear.loop.halved_elements``).
+    they were computed (``ngwear.loop.halved_elements``). ``anew``: whether the part had to be mounted anew on the last
+    mesh on which the states carried over did not settle at once.
     """
 
     stage: Stage
@@ -181,6 +182,7 @@ class State:
     refined: int = 0
     mesh_errors: dict[str, float] = field(default_factory=dict)
     first_wear: float = 0.0
+    anew: bool = False
 
     @property
     def background(self) -> Background | None:

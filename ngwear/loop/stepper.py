@@ -159,8 +159,8 @@ class Stepper:
     def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over.
 
-        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew; at once anew,
-        if it is a load step of the last way that fails: that does not depend on the state carried over.
+        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew; anew first if a
+        load step of the last way fails, or if the last new mesh took that.
 
         Raises
         ------
@@ -168,21 +168,21 @@ class Stepper:
             If it finds no equilibrium.
         """
         carried, floats = state.saved(), bool(state.stage.floats)
-        ways = [self._held_back, self._anew]
         try:
             self._settle_cycle(state, at_once=floats)
             return
         except ConvergenceError as error:
             if not floats:
                 raise
-            if not isinstance(error, NeedsLoadStepsError):
-                ways.reverse()
+            anew_first = state.anew or not isinstance(error, NeedsLoadStepsError)
+            ways = [self._anew, self._held_back] if anew_first else [self._held_back, self._anew]
         if state.stage.has_stick_slip:
             ways.append(self._settle_cycle)
         for way in ways:
             state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})
             try:
                 way(state)
+                state.anew = way == self._anew
                 return
             except ConvergenceError as error:
                 log.info("%s: on another way", error)

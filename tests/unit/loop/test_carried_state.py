@@ -74,6 +74,10 @@ def test_else_it_is_mounted_anew(ring, carried, monkeypatch):
     monkeypatch.setattr(Stepper, "_settle_cycle", fails_at_once)
     Stepper(ring).settle_on_new_mesh(state)
     assert push(state) == pytest.approx(before, rel=0.05)
+    assert state.anew
+    monkeypatch.setattr(stepper, "settle_carried", None)  # on the next mesh it is not tried
+    Stepper(ring).settle_on_new_mesh(state)
+    assert push(state) == pytest.approx(before, rel=0.05)
 
 
 def test_at_once_anew_if_a_load_step_fails(ring, carried, monkeypatch):
