@@ -159,8 +159,8 @@ class Stepper:
     def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over.
 
-        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew; anew first if a
-        load step of the last way fails, or if the last new mesh took that.
+        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew; anew first if
+        a load step of the last way fails, or if the last new mesh took that.
 
         Raises
         ------
