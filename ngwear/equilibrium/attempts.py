@@ -14,15 +14,16 @@ from ngwear.equilibrium.problem import IMBALANCE, Problem
 
 ATTEMPTS = 2  # before the laws are rounded off: what the terms change in the second one, ``Term.attempt`` says
 MORE_MAY_HELP = (Outcome.TOO_MANY_ITERATIONS, Outcome.FOLDED, Outcome.STALLED)
-# The rest changes the way and its time only. Settled on sections of ``tests/stability/foreign.py`` that failed before:
-# seed 0, indices 3, 6, 11, 13 and 15.
-ROUNDED = (0.1, 1.0, 0.01)  # of G: the first one that converges is the start
+# The rest changes the way and its time only. Settled on sections of ``tests/stability/foreign.py`` that failed or took
+# long before: seed 0, indices 3, 6, 11, 13 and 15; seed 30, indices 11, 12, 18 and 26.
+ROUNDED = (0.1, 1.0)  # of G: the first one that converges is the start
 SHARPER = 0.2  # times the rounding before; the root of it after a failure
 SHARP = 1e-4  # of G: from here to the corner itself
 # Strength of springs that hold the part back, in G / L: the first one as stiff as the part.
 FIRST, LOOSE = 1.0, 2e-4
 WEAKER, FAR = 4.0, 0.1  # factor between two steps; motion of a step, over the section's size, that is aimed at
-ABOVE, GROWS = 2.0, 1.2  # times a strength that failed: the least one; by what that falls in each step
+ABOVE, GROWS = 2.0, 1.2  # times a strength that failed: the least one; by what that falls in the next step, then faster
+STIFFEST = 2000.0  # in G / L, too: a part that springs of this strength do not hold back enough does not move on
 STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a strength: an equilibrium is near
 # Of G / L: the first springs hold the outline while the section beneath finds its stresses, the last hardly anything.
 STRENGTHS = (1000.0, 30.0, 1.0)
@@ -121,17 +122,17 @@ def _move_over(problem: Problem, options: NewtonOptions) -> Report:
     """
     place = problem.part(DISPLACEMENT)
     before = problem.state.vec.CreateVector()
-    strength, bound, total, failures = FIRST, 0.0, 0, 0
+    strength, bound, total, failures, eased = FIRST, 0.0, 0, 0, 0
     report = Report(Outcome.STALLED)
     try:
-        while failures <= FAILURES and total <= MOST:
+        while failures <= FAILURES and total <= MOST and strength <= STIFFEST:
             before.data = problem.state.vec
             _hold_back(problem, strength)
             report = iterate(problem, options)
             total += report.iterations
             if not report.converged:
                 problem.state.vec.data = before
-                failures += 1
+                failures, eased = failures + 1, 0
                 bound = ABOVE * strength
                 strength = WEAKER * max(strength, LOOSE)
                 continue
@@ -140,9 +141,9 @@ def _move_over(problem: Problem, options: NewtonOptions) -> Report:
             if abs(problem.turned()) > QUARTER:
                 report.outcome = Outcome.ROLLED
                 break
-            failures = 0
+            failures, eased = 0, eased + 1
             moved = _largest(problem.state.vec, before, place) / problem.body.size
-            bound = bound / GROWS if moved > STANDS else 0.0
+            bound = bound / GROWS**eased if moved > STANDS else 0.0
             if strength < LOOSE or (strength < NEARLY_LOOSE and moved < STANDS):
                 strength = 0.0
             else:

@@ -29,6 +29,7 @@ class Outcome(enum.Enum):
 
 
 SHORTEST = 1 / 64  # of a damped correction; it is taken even if the next one is longer
+CREEPS = 3  # damped corrections in a row of which only SHORTEST is taken: such a solve is given up
 LONGER = 4.0  # times the share taken of a damped correction: the first one tried of the next
 HALVINGS = 7  # of a correction that would fold an element: to 1/64 of it; shorter ones get nowhere
 # The next four change the time, hardly the result: settled on the rod seal and the shaft, whose
@@ -115,6 +116,7 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
     left = 1.0 if solver is None else 0.0
     goal, longest = options.tolerance * size, 1.0
     whole: list[float] = []  # corrections, undamped
+    shortest = 0  # damped corrections in a row of which SHORTEST was taken
     for report.iterations in range(1, options.max_iterations + 1):
         kept = left <= EXACT if options.reuse else _will_do(report.corrections, nearly, kept=kept)
         if not kept:
@@ -144,6 +146,7 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
         if damps:
             step = _damped(problem, solver, correction, trial, step, residual)
             longest = min(1.0, LONGER * step)
+            shortest = shortest + 1 if step <= SHORTEST else 0
             report.residual = norm(residual)
         left = min(1.0, solver.scaled_norm(residual) / before) if before > 0 else 1.0
         change = step * asked
@@ -155,7 +158,7 @@ def iterate(problem: Problem, options: NewtonOptions) -> Report:
         if step == 1.0 and change <= goal and leaves <= LEAVES * goal and settled:
             report.outcome = Outcome.CONVERGED
             break
-        if _stalled(whole):
+        if _stalled(whole) or shortest == CREEPS:
             report.outcome = Outcome.STALLED
             break
     return report
