@@ -32,7 +32,7 @@ def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: 
     cycle, vector = state.stage.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy()
     vector[:] = 0.0
     begin, state.phases = vector.copy(), []
-    state.stage.leave_fluid(np.empty((0, 3)))
+    state.stage.begin_unloaded()
     state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
     if lost_elements is not None:
         lost_elements.begin(state)

@@ -247,6 +247,13 @@ class Stage:
             friction.begin()
         state[:] = keep
 
+    def begin_unloaded(self) -> None:
+        """Start from the unloaded part, as if nothing had been solved: no slip, and no fluid that has passed."""
+        self.problem.set_loads(self.mounted_loads())
+        self.begin(np.zeros(self.problem.space.ndof))
+        self.let_fluid_pass(None)
+        self.leave_fluid(np.empty((0, 3)))
+
     def shares(self, stroke: Stroke) -> dict[str, Array]:
         """Slip over travel of the nodes in the stroke just solved [-], for each contact with stick and slip."""
         ways = {name: friction.slid() for name, friction in self.sticking.items()}

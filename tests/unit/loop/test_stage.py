@@ -1,6 +1,7 @@
 """What a scene becomes on a mesh."""
 
 import numpy as np
+import pytest
 
 from ngwear.effects.contact import OutlineContact
 from ngwear.effects.elasticity import Elasticity
@@ -8,8 +9,12 @@ from ngwear.equilibrium.problem import FixedEdges, Problem
 from ngwear.fields.kinematics import PlaneStrain
 from ngwear.geometry.body import Body
 from ngwear.geometry.outline import Outline
+from ngwear.loop.element_sizes import coarse_for_mounting, with_mounting_lengths
+from ngwear.loop.first_cycle import first_cycle
+from ngwear.loop.mounting import unworn_body
 from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage
+from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.materials import NeoHooke
 from ngwear.scene.accuracy import Accuracy
@@ -20,6 +25,7 @@ from ngwear.scene.program import Program, Stroke
 from ngwear.scene.read_scene import read_scene
 from ngwear.scene.scene import Scene
 from ngwear.surfaces import Plane
+from ngwear.wear.jump_control import JumpControl
 
 
 def test_surface_under_force_finds_several_ridges_of_one_height():
@@ -65,3 +71,20 @@ def test_scene_without_friction_has_the_unknowns_and_the_solver_of_elasticity_an
     by_hand.state.vec.data = made.problem.state.vec
     assert made.problem.tangent().flags == by_hand.tangent().flags
     assert made.problem.solver.name == by_hand.solver.name
+
+
+def test_a_part_mounted_anew_ends_where_it_ended_when_it_was_mounted_first():
+    """Slip, fluid and loads of what was solved on the mesh before do not count."""
+    scene = coarse_for_mounting(with_mounting_lengths(read_scene("geometries/o_ring/scene.toml")))
+    state = State(Stage(scene, unworn_body(scene, 6.0)), [], JumpControl(0.01, cycles=1))
+    first = first_cycle(state, lambda fraction: None, None)
+    vectors = [phase.vector for phase in state.phases]
+    stage = state.stage
+    stage.begin(2.0 * vectors[-1])
+    stage.let_fluid_pass(np.full((1, 2, 2), 1.0))
+    again = first_cycle(state, lambda fraction: None, None)
+    for forces, before in zip(again, first, strict=True):
+        for name, force in before.items():
+            assert forces[name] == pytest.approx(force, rel=1e-6, abs=1e-6)
+    for phase, vector in zip(state.phases, vectors, strict=True):
+        assert phase.vector == pytest.approx(vector, abs=1e-7)
