@@ -136,10 +136,9 @@ def advance(
         update = IMBALANCE not in target or goal == 1.0
         here = options if goal == 1.0 else on_the_way
         moves = options.leaps and (leaps or step < 2 * options.smallest)
-        short = step <= SHORT or step < 2 * options.smallest  # a longer one is halved first
-        rounds = here.newton.rounds and (short or leaps)
+        gradually = step <= SHORT  # a longer one is halved first, before the laws are rounded off, too
+        rounds = here.newton.rounds and (gradually or step < 2 * options.smallest)
         here = replace(here, newton=replace(here.newton, rounds=rounds, moves=moves))
-        gradually = step <= SHORT
         report = settle(problem, here, work, update=update, gradually=gradually)
         if have_rate and not report.converged and report.outcome is Outcome.BAD_START:
             vector.data = last
