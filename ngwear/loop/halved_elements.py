@@ -5,7 +5,8 @@ and widths with half the edges does not depend on them. First order is assumed, 
 convergence studies: the error is 2.5 times that change (Roache, J. Fluids Eng. 116 (1994) 405). It is computed before
 the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how much of the
 largest wear per cycle is left at the end. That of the peak pressure counts whole: the peak may move to the end of the
-contact, where wear leaves an edge. A worn outline has points for its own elements only, so that finer ones show peaks
+contact, where wear leaves an edge. What the nodes do not show of the peak at the end is added to it
+(``ContactProfile.missed_at_peak``): before, a node may have lain on the peak by chance. A worn outline has points for its own elements only, so that finer ones show peaks
 that are none; it is used if there is no equilibrium on the finer ones before, not even after mounting on them.
 
 Only for parts with room to move, which are mounted on coarse elements.
@@ -59,9 +60,17 @@ def add_mesh_errors(state: State) -> list[str]:
 
 
 def faded(state: State) -> dict[str, float]:
-    """``State.mesh_errors`` times what is left of the largest wear per cycle; that of the peak pressure as it is."""
+    """``State.mesh_errors`` times what is left of the largest wear per cycle; that of the peak pressure whole.
+
+    To that of the peak pressure, what the present peaks may be read too low by is added.
+    """
     left = min(1.0, _largest_wear(read_cycle(state)) / state.first_wear) if state.first_wear > 0 else 1.0
-    return {name: error * (1.0 if name == BY_PEAK else left) for name, error in state.mesh_errors.items()}
+    errors = {name: error * (1.0 if name == BY_PEAK else left) for name, error in state.mesh_errors.items()}
+    if BY_PEAK in errors:
+        profiles = [profile for report in state.reports for profile in report.contacts.values()]
+        largest = max(float(profile.pressure.max()) for profile in profiles)
+        errors[BY_PEAK] += max(profile.missed_at_peak for profile in profiles) / largest if largest > 0 else 0.0
+    return errors
 
 
 def _change_where_deepest(here: State, there: State) -> float:

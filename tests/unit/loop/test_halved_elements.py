@@ -55,12 +55,24 @@ def test_the_state_stays_as_it_is(mounted):
 
 def test_errors_fade_as_the_wear_does(mounted):
     add_mesh_errors(mounted)
-    assert faded(mounted) == mounted.mesh_errors
+    whole = faded(mounted)
     mounted.first_wear *= 2
     assert faded(mounted)[BY_DEPTH] == pytest.approx(0.5 * mounted.mesh_errors[BY_DEPTH])
-    assert faded(mounted)[BY_PEAK] == mounted.mesh_errors[BY_PEAK]
+    assert faded(mounted)[BY_PEAK] == whole[BY_PEAK]
     mounted.first_wear *= 0.1  # wear that grows does not make them larger
-    assert faded(mounted) == mounted.mesh_errors
+    assert faded(mounted) == whole
+    assert {name: error for name, error in whole.items() if name != BY_PEAK} == {
+        name: error for name, error in mounted.mesh_errors.items() if name != BY_PEAK
+    }
+
+
+def test_what_the_nodes_do_not_show_of_the_peak_is_added(mounted):
+    add_mesh_errors(mounted)
+    profiles = [report.contacts["rod"] for report in mounted.reports]
+    added = faded(mounted)[BY_PEAK] - mounted.mesh_errors[BY_PEAK]
+    missed = max(profile.missed_at_peak for profile in profiles)
+    assert added == pytest.approx(missed / max(profile.pressure.max() for profile in profiles))
+    assert 0 < added < 0.1
 
 
 def test_of_strokes_on_two_meshes_all_loads_count_once(ring, mounted):
