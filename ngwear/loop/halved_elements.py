@@ -6,8 +6,9 @@ convergence studies: the error is 2.5 times that change (Roache, J. Fluids Eng. 
 the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how much of the
 largest wear per cycle is left at the end. That of the peak pressure counts whole: the peak may move to the end of the
 contact, where wear leaves an edge. What the nodes do not show of the peak at the end is added to it
-(``ContactProfile.missed_at_peak``): before, a node may have lain on the peak by chance. A worn outline has points for its own elements only, so that finer ones show peaks
-that are none; it is used if there is no equilibrium on the finer ones before, not even after mounting on them.
+(``ContactProfile.missed_at_peak``): before, a node may have lain on the peak by chance. A worn outline has points for
+its own elements only, so that finer ones show peaks that are none; it is used if there is no equilibrium on the finer
+ones before, not even after mounting on them.
 
 Only for parts with room to move, which are mounted on coarse elements.
 """
