@@ -25,7 +25,8 @@ Array = NDArray[np.float64]
 DEEP = 0.01  # of the mesh edge there: overlap with a surface
 UNLISTED = ", whose edges do not name it: name it there, or give no edges, so that any may touch"
 COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
-ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node
+ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node about its course,
+UP_AND_DOWN = 0.05  # and of one that goes up and down twice on five nodes
 ALTERNATES = 3  # nodes in a row whose second differences change sign: two bumps on five nodes are not resolved
 UNBALANCED = 1e-5  # of the largest force: sum of all forces where no support takes a part of it
 BARELY_HELD = "barely held"  # beginning of a key
@@ -126,24 +127,44 @@ def _gap(contact: OutlineContact, place: Array) -> Array:
 def _zigzag(name: str, profile: ContactProfile) -> Iterator[Finding]:
     """A pressure that alternates from node to node: the mesh does not resolve the contact, or a step is unstable."""
     peak = float(profile.pressure.max(initial=0.0))
+    for amplitude, middle, nodes in (*_on_slopes(profile), *_up_and_down(profile)):
+        x, y = profile.place[middle]
+        apart = np.linalg.norm(np.diff(profile.reference[nodes], axis=0), axis=1)
+        edges = np.minimum(np.append(apart, apart[-1]), np.append(apart[0], apart))
+        yield Finding(
+            f"zigzag {name}",
+            amplitude,
+            f"contact '{name}': the pressure alternates from node to node by ±{amplitude:.3g} MPa near "
+            f"({x:.4g}, {y:.4g}), with a peak of {peak:.3g} MPa: take smaller elements there",
+            np.column_stack([profile.reference[nodes], edges]),
+        )
+
+
+def _on_slopes(profile: ContactProfile) -> Iterator[tuple[float, int, NDArray[np.intp]]]:
+    """Amplitude [MPa], middle and nodes of a zone where the pressure alternates about its course, steep or not."""
     for zone in profile.zones():
         bend = np.diff(profile.pressure[zone.nodes], 2)
         turns = bend[1:] * bend[:-1] < 0
         size = np.minimum(np.abs(bend[1:]), np.abs(bend[:-1])) * turns / 4
         for first in range(len(size) - ALTERNATES + 2):
             amplitude = float(size[first : first + ALTERNATES - 1].min())
-            if amplitude > ZIGZAG * peak:
-                x, y = profile.place[zone.nodes][first + 1]
-                nodes = zone.nodes
-                apart = np.linalg.norm(np.diff(profile.reference[nodes], axis=0), axis=1)
-                edges = np.minimum(np.append(apart, apart[-1]), np.append(apart[0], apart))
-                yield Finding(
-                    f"zigzag {name}",
-                    amplitude,
-                    f"contact '{name}': the pressure alternates from node to node by ±{amplitude:.3g} MPa near "
-                    f"({x:.4g}, {y:.4g}), with a peak of {peak:.3g} MPa: take smaller elements there",
-                    np.column_stack([profile.reference[nodes], edges]),
-                )
+            if amplitude > ZIGZAG * float(profile.pressure.max()):
+                yield amplitude, int(zone.nodes[first + 1]), zone.nodes
+
+
+def _up_and_down(profile: ContactProfile) -> Iterator[tuple[float, int, NDArray[np.intp]]]:
+    """The same of five nodes on which the pressure goes up and down twice, to nothing between or not."""
+    k, p = len(profile.t), profile.pressure
+    if k < 5 or not p.any():
+        return
+    nodes = np.lib.stride_tricks.sliding_window_view(np.arange(k + 4) % k, 5)  # around a contact that closes, too
+    joins = np.zeros(k, dtype=bool)  # whether a mesh edge joins a node to the next one
+    joins[profile.edges[(profile.edges[:, 1] - profile.edges[:, 0]) % k == 1, 0]] = True
+    joins[profile.edges[(profile.edges[:, 0] - profile.edges[:, 1]) % k == 1, 1]] = True
+    steps = np.diff(p[nodes], axis=1) * (1.0, -1.0, 1.0, -1.0)
+    size = np.maximum(steps.min(axis=1), -steps.max(axis=1)) / 2
+    for first in np.flatnonzero((size > UP_AND_DOWN * p.max()) & joins[nodes[:, :4]].all(axis=1)):
+        yield float(size[first]), int(nodes[first, 2]), nodes[first]
 
 
 def _imbalance(stage: Stage, forces: Mapping[str, Array]) -> Iterator[Finding]:

@@ -80,6 +80,23 @@ def test_a_pressure_that_alternates_is_found(solved):
     assert found(stage, report, contacts={"plate": replace(profile, pressure=bent)}) == {}
 
 
+@pytest.mark.parametrize("loads", [(0.5, 0.8, 0.5, 1.0, 0.6), (0.0, 1.0, 0.0, 1.0, 0.0), (0.8, 1.0, 0.85, 1.0, 0.0)])
+def test_a_pressure_that_goes_up_and_down_twice_on_five_nodes_is_found(solved, loads):
+    """Wherever the five nodes are, in a contact that closes as well; a smaller ripple is not."""
+    stage, report = solved
+    profile = report.contacts["plate"]
+    k, peak = len(profile.t), profile.pressure.max()
+    closing = np.vstack([profile.edges, [k - 1, 0]])
+    some = replace(profile, edges=closing, mean=np.append(profile.mean, 0.0))
+    for first in (3, k - 2):
+        rough = np.zeros(k)
+        rough[(first + np.arange(5)) % k] = peak * np.array(loads)
+        assert "zigzag plate" in found(stage, report, contacts={"plate": replace(some, pressure=rough)})
+    even = np.zeros(k)
+    even[3:8] = peak * np.array([0.95, 1.0, 0.95, 1.0, 0.95])
+    assert found(stage, report, contacts={"plate": replace(some, pressure=even)}) == {}
+
+
 def test_forces_that_do_not_balance_are_found(scene, solved):
     stage, report = solved
     unheld = replace(scene, supports=[nw.Support(edges=["bottom"], x=False)])
