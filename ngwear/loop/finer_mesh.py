@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,13 @@ from ngwear.equilibrium.attempts import let_go
 from ngwear.equilibrium.newton import Report
 from ngwear.equilibrium.problem import Loads
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
-from ngwear.errors import ConvergenceError
+from ngwear.errors import ConvergenceError, MeshError
 from ngwear.loop.carried_state import HARDEST
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.solution_checks import Finding
 from ngwear.loop.state import Phase, State
 from ngwear.scene.accuracy import PRESETS
+from ngwear.scene.scene import Scene
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
@@ -84,6 +86,34 @@ def refine_at(state: State, found: Sequence[Finding]) -> None:
 def keep_as_it_is(state: State) -> None:
     """Refine no more at findings: finer elements did not help, and the findings stay warnings."""
     state.refined = LOCALLY
+
+
+def back_to_coarser(
+    state: State, coarse: dict[str, Any], scene: Scene, error: ConvergenceError | MeshError
+) -> list[Finding]:
+    """Go on with the last mesh, of ``scene``, if none as fine as the accuracy asks for has an equilibrium; a finding.
+
+    ``coarse`` is the state saved on that mesh.
+
+    Raises
+    ------
+    ConvergenceError, MeshError
+        The error, if the part is held, if the last mesh was the one for mounting, or if the part itself shows the
+        cause, such as a surface that creases: coarse elements bear more than the rubber.
+    """
+    explained = isinstance(error, ConvergenceError) and bool(error.cause)
+    if explained or not remeshes(state) or coarse["ledger"].remeshes == 0:
+        raise error
+    log.info("%s: back to the coarser elements", error)
+    state.restore(coarse)
+    state.stage.scene = scene
+    keep_as_it_is(state)
+    said, elements = str(error).partition("\n")[0], state.stage.body.mesh.ne
+    sentence = (
+        f"the results are on {elements} elements: no equilibrium was found on finer ones, which the accuracy asks "
+    )
+    sentence += f"for, and what they would change is not known; the way there failed with: {said}"
+    return [Finding("coarser", 1.0, sentence)]
 
 
 def advance_on_finer(

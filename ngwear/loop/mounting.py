@@ -92,7 +92,13 @@ def mount(stage: Stage, on_mount: Callable[[float], None], way: Callable[..., Wo
         raise ConvergenceError(message, error.report, cause=error.cause) from None
 
 
-def refuse_idle_contacts(state: State) -> None:
+def refuse_useless(state: State) -> None:
+    """SceneError if a contact or an inlet takes no part in any stroke."""
+    _refuse_idle_contacts(state)
+    _refuse_closed_inlets(state)
+
+
+def _refuse_idle_contacts(state: State) -> None:
     """SceneError if a surface that should wear the part touches it in no stroke."""
     problem = state.stage.problem
     for spec in state.stage.scene.contacts:
@@ -106,7 +112,7 @@ def refuse_idle_contacts(state: State) -> None:
             )
 
 
-def refuse_closed_inlets(state: State) -> None:
+def _refuse_closed_inlets(state: State) -> None:
     """SceneError if an inlet lies, in each stroke with pressure, in a pocket that a contact closes."""
     stage, cycle = state.stage, state.stage.scene.program.cycle
     vector = stage.problem.state.vec.FV().NumPy()

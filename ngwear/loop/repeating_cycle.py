@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import replace
 
 import numpy as np
 
@@ -60,15 +59,14 @@ def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport]
     return change
 
 
-def still_creeps(reports: list[StrokeReport], change: float) -> list[StrokeReport]:
-    """The reports, the last with a finding if forces still change by more than ``REPEATS`` from cycle to cycle."""
+def creeping(change: float) -> list[Finding]:
+    """A finding if forces still change by more than ``REPEATS`` from cycle to cycle."""
     if change <= REPEATS:
-        return reports
+        return []
     sentence = f"the part still creeps where the wear begins: forces change by {100 * change:.0f} % of the largest "
     sentence += "from one cycle to the next, and the wear may change as much; hold the part, or lower the friction of "
     sentence += "what it rests on"
-    *others, last = reports
-    return [*others, replace(last, findings=(*last.findings, Finding("creep", change, sentence)))]
+    return [Finding("creep", change, sentence)]
 
 
 def largest_change(before: list[Forces], after: list[Forces]) -> float:

@@ -317,3 +317,11 @@ class StrokeReport:
     comes_further: bool = False
     turned: float = 0.0
     trapped: float | None = None
+
+
+def with_findings(reports: list[StrokeReport], found: list[Finding]) -> list[StrokeReport]:
+    """The reports, the last with these findings too."""
+    if not found:
+        return reports
+    *others, last = reports
+    return [*others, replace(last, findings=(*last.findings, *found))]

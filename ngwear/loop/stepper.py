@@ -13,23 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError, require
+from ngwear.loop import finer_mesh
 from ngwear.loop.carried_state import settle_carried
 from ngwear.loop.element_sizes import coarse_for_mounting, with_contact_lengths, with_mounting_lengths, with_patch
-from ngwear.loop.finer_mesh import keep_as_it_is, may_be_finer, refine_at, refine_everywhere, unresolved
 from ngwear.loop.first_cycle import first_cycle
 from ngwear.loop.law_changes import steady_cycles
-from ngwear.loop.mounting import (
-    give_memory,
-    refuse_closed_inlets,
-    refuse_idle_contacts,
-    unworn_body,
-    warn_if_unstable,
-)
+from ngwear.loop.mounting import give_memory, refuse_useless, unworn_body, warn_if_unstable
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
-from ngwear.loop.repeating_cycle import CYCLE_STEPS, repeat_cycle, still_creeps
+from ngwear.loop.repeating_cycle import CYCLE_STEPS, creeping, repeat_cycle
+from ngwear.loop.solution_checks import Finding
 from ngwear.loop.stage import Stage
-from ngwear.loop.state import State, StrokeReport
+from ngwear.loop.state import State, StrokeReport, with_findings
 from ngwear.loop.stroke_report import stroke_report
 from ngwear.loop.stroke_solve import NeedsLoadStepsError, pass_stroke, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
@@ -109,13 +104,12 @@ class Stepper:
         state = State(stage, [], control, across=self._across)
         state.counters = {name: c.counter for name, c in stage.contacts.items() if c.counter is not None}
         forces = first_cycle(state, self.on_mount, self._lost_elements)
-        refuse_idle_contacts(state)
-        refuse_closed_inlets(state)
+        refuse_useless(state)
         if scene.deactivation is None:
             repeat_cycle(state, self._pass, forces)  # most of the way on few elements
-            self._refine(state)
+            found = self._refine(state)
             change = repeat_cycle(state, self._pass, [report.forces for report in state.reports])
-            state.reports = still_creeps(state.reports, change)
+            state.reports = with_findings(state.reports, found + creeping(change))
         else:
             self._settle_cycle(state)
         arms = scene.arms
@@ -124,8 +118,8 @@ class Stepper:
         self.on_mount(1.0)
         return state
 
-    def _refine(self, state: State) -> None:
-        """Remesh until the mesh is fine enough for all strokes of the cycle."""
+    def _refine(self, state: State) -> list[Finding]:
+        """Remesh until the mesh is fine enough for all strokes; a finding if there is no equilibrium on such a mesh."""
         ahead, floats = remaining_sliding(state), bool(state.stage.floats)
         levels = 2 if floats else 4  # more remeshes improve little here; the run remeshes where it must
         provisional = state.across is not None  # the mounting mesh may also be too fine
@@ -149,12 +143,17 @@ class Stepper:
                     break
                 levels += 1
                 continue
-            remesh(state, scene=scene if floats else None)
-            self.settle_on_new_mesh(state)
+            coarse = state.saved()
+            try:
+                remesh(state, scene=scene if floats else None)
+                self.settle_on_new_mesh(state)
+            except (ConvergenceError, MeshError) as error:
+                return finer_mesh.back_to_coarser(state, coarse, before, error)
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
         if state.ledger.remeshes >= levels:  # the last new mesh has not been looked at
             self._resolves(state)
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
+        return []
 
     def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over.
@@ -201,16 +200,16 @@ class Stepper:
 
     def _resolves(self, state: State) -> bool:
         """Settle the cycle on finer elements where the last solves ask for them; False if none do, or it fails."""
-        if not (found := unresolved(state)):
+        if not (found := finer_mesh.unresolved(state)):
             return False
         coarse = state.saved()
         try:
-            refine_at(state, found)
+            finer_mesh.refine_at(state, found)
             self.settle_on_new_mesh(state)
         except (ConvergenceError, MeshError) as error:
             log.info("%s: back to the coarser elements", error)
             state.restore(coarse)
-            keep_as_it_is(state)
+            finer_mesh.keep_as_it_is(state)
             return False
         return True
 
@@ -269,14 +268,14 @@ class Stepper:
                 explained = isinstance(error, ConvergenceError) and bool(error.cause)
                 if cycles == 1:
                     state.restore(saved)
-                    if coarser is None and (explained or not may_be_finer(state)):
+                    if coarser is None and (explained or not finer_mesh.may_be_finer(state)):
                         raise
                     log.info("step of one cycle failed (%s); tried on other elements", error)
                     if coarser is None:
-                        refine_everywhere(state)
+                        finer_mesh.refine_everywhere(state)
                     else:
                         state.restore(coarser)
-                        keep_as_it_is(state)
+                        finer_mesh.keep_as_it_is(state)
                         coarser = None
                     continue
                 log.info("step of %d cycles failed (%s); fewer are tried", cycles, error)
@@ -287,10 +286,10 @@ class Stepper:
                 state.restore(saved)
                 most = state.control.cut(cycles, to_one=to_one)
                 continue
-            if found := unresolved(state):
+            if found := finer_mesh.unresolved(state):
                 state.restore(saved)
                 coarser = state.saved()
-                refine_at(state, found)
+                finer_mesh.refine_at(state, found)
                 continue
             share = (state.strokes - saved["strokes"]) / program.strokes
             off = state.ledger.depth_ratio(saved["ledger"], share, left=1 - state.strokes / program.strokes)

@@ -131,8 +131,8 @@ def test_a_run_that_does_not_bear_them_goes_on_without(ring, whole, monkeypatch)
     run = Stepper(ring)
     state = run.start()
     elements = state.stage.body.mesh.ne
-    monkeypatch.setattr(stepper, "unresolved", look)
-    monkeypatch.setattr(stepper, "refine_at", refine)
+    monkeypatch.setattr(stepper.finer_mesh, "unresolved", look)
+    monkeypatch.setattr(stepper.finer_mesh, "refine_at", refine)
     state = run.advance(state)
     assert state.strokes == 2
     assert state.refined == LOCALLY
@@ -156,3 +156,41 @@ def test_the_series_says_how_far_it_has_turned(ring, whole):
     turned = [row["section turned by [deg]"] for row in result.records.rows]
     assert turned[0] == pytest.approx(whole.reports[0].turned, abs=1e-6)
     assert max(map(abs, turned)) < 45
+
+
+def fails_on_mesh(monkeypatch, number, error):
+    """The part finds no equilibrium on that new mesh of the start."""
+    settle = Stepper.settle_on_new_mesh
+
+    def settles(self, state):
+        if state.ledger.remeshes >= number:
+            raise error
+        settle(self, state)
+
+    monkeypatch.setattr(Stepper, "settle_on_new_mesh", settles)
+
+
+def test_without_an_equilibrium_on_the_last_mesh_the_one_before_counts_and_this_is_told(ring, whole, monkeypatch):
+    fails_on_mesh(monkeypatch, 2, ConvergenceError("the corrections do not shrink"))
+    state = Stepper(ring).start()
+    assert state.ledger.remeshes == 1
+    assert state.stage.body.mesh.ne < whole.stage.body.mesh.ne
+    (told,) = [found for found in state.reports[-1].findings if found.key == "coarser"]
+    assert f"on {state.stage.body.mesh.ne} elements: no equilibrium was found on finer ones" in told.sentence
+    assert "the corrections do not shrink" in told.sentence
+    assert push(state) == pytest.approx(push(whole), rel=0.05)
+    assert Stepper(ring).advance(state).strokes > 0
+
+
+@pytest.mark.parametrize(
+    ("number", "error"),
+    [
+        pytest.param(1, ConvergenceError("the corrections do not shrink"), id="first new mesh"),
+        pytest.param(2, ConvergenceError("no equilibrium", cause="friction creases the surface"), id="cause known"),
+    ],
+)
+def test_a_part_without_an_equilibrium_is_not_passed_on_coarser_elements(ring, monkeypatch, number, error):
+    fails_on_mesh(monkeypatch, number, error)
+    with pytest.raises(ConvergenceError) as raised:
+        Stepper(ring).start()
+    assert raised.value is error
