@@ -180,7 +180,7 @@ class ContactProfile:
         """By how much the largest pressure may be read too low [MPa]; 0 out of contact.
 
         A peak of curvature p'' is off by ``h^2 p''/12`` by lumping (see ``_gathered``), and lies up to ``h^2 p''/8``
-        above the nearest node: h is the longer mesh edge at that node, p'' follows from the node's neighbours.
+        above the nearest node: h^2 is the product of the two mesh edges at that node, p'' follows from its neighbours.
         """
         top = int(self.pressure.argmax()) if len(self.pressure) else 0
         if not self.pressure.any():
@@ -190,8 +190,7 @@ class ContactProfile:
         p, x = self.pressure[around], self.place[around]
         before, after = np.linalg.norm(np.diff(x, axis=0), axis=1)
         slopes = [drop / h if h > 0 else 0.0 for drop, h in ((p[1] - p[0], before), (p[1] - p[2], after))]
-        h = max(before, after)
-        return float(OFF * h * h * sum(slopes) / (0.5 * (before + after))) if h > 0 else 0.0
+        return float(OFF * before * after * sum(slopes) / (0.5 * (before + after))) if before + after > 0 else 0.0
 
     def straight(self) -> ContactProfile:
         """The same profile with loads from the lumped pressures (same sum), and pressures linear between nodes."""
