@@ -18,6 +18,7 @@ Array = NDArray[np.float64]
 HALF = 0.5  # of a node's pressure: what the pressure around it is above as far as its bump goes
 HERTZ = math.sqrt(1 - HALF**2)  # width at that pressure over the whole one of a Hertz pressure
 LEAST_WIDTH = 0.5  # of a mesh edge: a contact within it has no width that its nodes could tell
+NO_PRESSURE = 1e-12  # MPa: less is none
 OFF = 1 / 8 + 1 / 12  # of h^2 p'': what a peak between two nodes is above them, and what lumping takes off it
 
 
@@ -207,7 +208,7 @@ class ContactProfile:
     def zones(self, *, threshold: float = 1e-3) -> list[Zone]:
         """Connected pieces where the pressure exceeds ``threshold`` times its maximum."""
         p = self.pressure
-        on = p > max(threshold * p.max(initial=0.0), 1e-12)  # a thousandth: what the mesh makes of nothing at an end
+        on = p > max(threshold * p.max(initial=0.0), NO_PRESSURE)  # what the mesh makes of nothing at an end
         if not on.any() or on.all() or not self._closes():
             return self._pieces(on)
         # Around the whole outline: begin in the middle of the longest open piece, so that no zone lies across the end.

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
-from ngwear.effects.contact_profile import ContactProfile
+from ngwear.effects.contact_profile import NO_PRESSURE, ContactProfile
 from ngwear.equilibrium.diagnosis import CRUSHED, crosses
 from ngwear.fields.deformed_outline import crossing, outline_places
 from ngwear.loop.stage import Stage
@@ -155,7 +155,7 @@ def _on_slopes(profile: ContactProfile) -> Iterator[tuple[float, int, NDArray[np
 def _up_and_down(profile: ContactProfile) -> Iterator[tuple[float, int, NDArray[np.intp]]]:
     """The same of five nodes on which the pressure goes up and down twice, to nothing between or not."""
     k, p = len(profile.t), profile.pressure
-    if k < 5 or not p.any():
+    if k < 5 or p.max() <= NO_PRESSURE:
         return
     nodes = np.lib.stride_tricks.sliding_window_view(np.arange(k + 4) % k, 5)  # around a contact that closes, too
     joins = np.zeros(k, dtype=bool)  # whether a mesh edge joins a node to the next one

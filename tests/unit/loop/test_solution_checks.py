@@ -95,6 +95,8 @@ def test_a_pressure_that_goes_up_and_down_twice_on_five_nodes_is_found(solved, l
     even = np.zeros(k)
     even[3:8] = peak * np.array([0.95, 1.0, 0.95, 1.0, 0.95])
     assert found(stage, report, contacts={"plate": replace(some, pressure=even)}) == {}
+    nothing = replace(some, pressure=1e-300 * rough)
+    assert found(stage, report, contacts={"plate": nothing}) == {}
 
 
 def test_forces_that_do_not_balance_are_found(scene, solved):
