@@ -88,6 +88,13 @@ def keep_as_it_is(state: State) -> None:
     state.refined = LOCALLY
 
 
+def go_back(state: State, coarse: dict[str, Any], error: Exception) -> None:
+    """Go back to the state saved on coarser elements, since finer ones failed with this error, and keep these."""
+    log.info("%s: back to the coarser elements", error)
+    state.restore(coarse)
+    keep_as_it_is(state)
+
+
 def back_to_coarser(
     state: State, coarse: dict[str, Any], scene: Scene, error: ConvergenceError | MeshError
 ) -> list[Finding]:
@@ -104,15 +111,11 @@ def back_to_coarser(
     explained = isinstance(error, ConvergenceError) and bool(error.cause)
     if explained or not remeshes(state) or coarse["ledger"].remeshes == 0:
         raise error
-    log.info("%s: back to the coarser elements", error)
-    state.restore(coarse)
+    go_back(state, coarse, error)
     state.stage.scene = scene
-    keep_as_it_is(state)
     said, elements = str(error).partition("\n")[0], state.stage.body.mesh.ne
-    sentence = (
-        f"the results are on {elements} elements: no equilibrium was found on finer ones, which the accuracy asks "
-    )
-    sentence += f"for, and what they would change is not known; the way there failed with: {said}"
+    sentence = f"the results are on {elements} elements: no equilibrium was found on finer ones, which the accuracy "
+    sentence += f"asks for, and what they would change is not known; the way there failed with: {said}"
     return [Finding("coarser", 1.0, sentence)]
 
 

@@ -123,6 +123,7 @@ class Stepper:
         ahead, floats = remaining_sliding(state), bool(state.stage.floats)
         levels = 2 if floats else 4  # more remeshes improve little here; the run remeshes where it must
         provisional = state.across is not None  # the mounting mesh may also be too fine
+        found: list[Finding] = []
         while state.ledger.remeshes < levels:
             vectors, before = [phase.vector for phase in state.phases], state.stage.scene
             scene = before
@@ -148,12 +149,13 @@ class Stepper:
                 remesh(state, scene=scene if floats else None)
                 self.settle_on_new_mesh(state)
             except (ConvergenceError, MeshError) as error:
-                return finer_mesh.back_to_coarser(state, coarse, before, error)
+                found = finer_mesh.back_to_coarser(state, coarse, before, error)
+                break
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
         if state.ledger.remeshes >= levels:  # the last new mesh has not been looked at
             self._resolves(state)
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
-        return []
+        return found
 
     def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over.
@@ -207,9 +209,7 @@ class Stepper:
             finer_mesh.refine_at(state, found)
             self.settle_on_new_mesh(state)
         except (ConvergenceError, MeshError) as error:
-            log.info("%s: back to the coarser elements", error)
-            state.restore(coarse)
-            finer_mesh.keep_as_it_is(state)
+            finer_mesh.go_back(state, coarse, error)
             return False
         return True
 
