@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ngwear.equilibrium.stepping import StepOptions
+from ngwear.errors import ConvergenceError, MeshError
 from ngwear.loop.bearable_friction import advance_while_sliding
 from ngwear.loop.finer_mesh import advance_on_finer
 from ngwear.loop.mounting import mount
+from ngwear.loop.placing import place_beside_wall, unloaded
 from ngwear.loop.state import Phase, State
 from ngwear.loop.stroke_report import Forces
 from ngwear.loop.stroke_solve import recorder, steps_for
@@ -26,13 +28,24 @@ MOVING = 1 / 16  # of a load change: the first step of a part with room to move;
 def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:
     """Mount the unloaded part and solve each stroke of the cycle once, in load steps, each from the one before.
 
+    A part that friction rolls over on its way to a wall is mounted anew, beside that wall.
+
     Returns the forces on the part in each stroke.
     """
+    try:
+        return _first_cycle(state, on_mount, lost_elements)
+    except (ConvergenceError, MeshError) as error:
+        if not place_beside_wall(state, error):
+            raise
+    return _first_cycle(state, on_mount, lost_elements)
+
+
+def _first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:
+    """The same from where the part is placed."""
     forces: list[Forces] = []
-    cycle, vector = state.stage.scene.program.cycle, state.stage.problem.state.vec.FV().NumPy()
-    vector[:] = 0.0
-    begin, state.phases = vector.copy(), []
-    state.stage.begin_unloaded()
+    cycle, state.phases = state.stage.scene.program.cycle, []
+    begin = unloaded(state)
+    state.stage.begin_unloaded(begin)
     state.work.add(mount(state.stage, on_mount, partial(advance_on_finer, state, begin=begin)))
     if lost_elements is not None:
         lost_elements.begin(state)

@@ -23,6 +23,7 @@ from ngwear.scene.program import Stroke
 Array = NDArray[np.float64]
 
 DEEP = 0.01  # of the mesh edge there: overlap with a surface
+MOST = 0.1  # of what drives an overlap most: eight times less on half the edge
 UNLISTED = ", whose edges do not name it: name it there, or give no edges, so that any may touch"
 COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node about its course,
@@ -74,7 +75,7 @@ def findings(
     """
     before, place = outline_places(stage.body, stage.problem.fields[DISPLACEMENT])
     found = [
-        *_overlaps(stage, before, place, worn=worn),
+        *_overlaps(stage, before, place, profiles, worn=worn),
         *_crossings(place),
         *_imbalance(stage, forces),
         *_crushed(stage),
@@ -88,7 +89,9 @@ def findings(
     return tuple(found)
 
 
-def _overlaps(stage: Stage, before: Array, place: Array, *, worn: bool) -> Iterator[Finding]:
+def _overlaps(
+    stage: Stage, before: Array, place: Array, profiles: Mapping[str, ContactProfile], *, worn: bool
+) -> Iterator[Finding]:
     """Nodes of the whole outline that lie inside a surface, whether its contact lists their edges or not."""
     line = stage.body.outline
     length = np.linalg.norm(np.roll(place[0], -1, axis=0) - place[0], axis=1)
@@ -107,7 +110,30 @@ def _overlaps(stage: Stage, before: Array, place: Array, *, worn: bool) -> Itera
                 edges = np.broadcast_to(length, depth.shape)
                 coarse = (depth > 0) & (advice == COARSE)
                 places = np.column_stack([before[coarse], edges[coarse]])
+                if coarse.any() and deep < edges[worst]:
+                    places = _driving(profiles[name] if name in profiles else contact.profile(), places)
                 yield Finding(f"overlap {name} {edge}", deep, f"{where}{advice}", places)
+
+
+def _driving(profile: ContactProfile, inside: Array) -> Array:
+    """Which mesh edges of a contact push its nodes into the surface, given those that lie inside; as ``places``.
+
+    The pressure is linear on each mesh edge. It does not resist a bulge with all nodes inside by ``a`` and the middles
+    of all edges outside by ``a/2``, which only the rubber does, by G a per edge. A pressure of curvature p'' drives it
+    by ``p'' h^3`` per edge of length h. So a few long edges bend a whole contact of short ones.
+    """
+    first, second = profile.edges.T
+    apart = profile.reference[second] - profile.reference[first]
+    h, p, k = np.linalg.norm(apart, axis=1), profile.pressure, len(profile.t)
+    slope = (p[second] - p[first]) / h
+    bend = np.abs(np.bincount(first, slope, k) - np.bincount(second, slope, k))
+    bend = 2 * bend / (np.bincount(first, h, k) + np.bincount(second, h, k))
+    drive = np.maximum(bend[first], bend[second]) * h**3 * ((p[first] > 0) | (p[second] > 0))
+    if not drive.any():
+        return inside
+    most = drive > MOST * drive.max()
+    middles = (profile.reference[first] + profile.reference[second])[most] / 2
+    return np.column_stack([middles, h[most]])
 
 
 def _crossings(place: Array) -> Iterator[Finding]:

@@ -247,10 +247,10 @@ class Stage:
             friction.begin()
         state[:] = keep
 
-    def begin_unloaded(self) -> None:
-        """Start from the unloaded part, as if nothing had been solved: no slip, and no fluid that has passed."""
+    def begin_unloaded(self, vector: Array) -> None:
+        """Start from the state of the unloaded part, as if nothing had been solved: no slip, no fluid has passed."""
         self.problem.set_loads(self.mounted_loads())
-        self.begin(np.zeros(self.problem.space.ndof))
+        self.begin(vector)
         self.let_fluid_pass(None)
         self.leave_fluid(np.empty((0, 3)))
 

@@ -161,7 +161,8 @@ class State:
     solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
     ``mesh_errors`` are relative errors by the mesh, by name, and ``first_wear`` [N] is the largest wear per cycle when
     they were computed (``ngwear.loop.halved_elements``). ``anew``: whether the part had to be mounted anew on the last
-    mesh on which the states carried over did not settle at once.
+    mesh on which the states carried over did not settle at once. ``placed``: where it is mounted, from where it is
+    drawn [mm] (``ngwear.loop.placing``).
     """
 
     stage: Stage
@@ -183,6 +184,7 @@ class State:
     mesh_errors: dict[str, float] = field(default_factory=dict)
     first_wear: float = 0.0
     anew: bool = False
+    placed: tuple[float, float] = (0.0, 0.0)
 
     @property
     def background(self) -> Background | None:

@@ -19,6 +19,7 @@ from ngwear.loop.element_sizes import coarse_for_mounting, with_contact_lengths,
 from ngwear.loop.first_cycle import first_cycle
 from ngwear.loop.law_changes import steady_cycles
 from ngwear.loop.mounting import give_memory, refuse_useless, unworn_body, warn_if_unstable
+from ngwear.loop.placing import placed
 from ngwear.loop.refinement import is_too_coarse
 from ngwear.loop.remeshing import is_due, remaining_sliding, remesh
 from ngwear.loop.repeating_cycle import CYCLE_STEPS, creeping, repeat_cycle
@@ -109,7 +110,7 @@ class Stepper:
             repeat_cycle(state, self._pass, forces)  # most of the way on few elements
             found = self._refine(state)
             change = repeat_cycle(state, self._pass, [report.forces for report in state.reports])
-            state.reports = with_findings(state.reports, found + creeping(change))
+            state.reports = with_findings(state.reports, found + creeping(change) + placed(state))
         else:
             self._settle_cycle(state)
         arms = scene.arms
@@ -152,8 +153,8 @@ class Stepper:
                 found = finer_mesh.back_to_coarser(state, coarse, before, error)
                 break
             self.on_mount(0.9 + 0.02 * min(state.ledger.remeshes, 4))
-        if state.ledger.remeshes >= levels:  # the last new mesh has not been looked at
-            self._resolves(state)
+        while self._resolves(state):  # the last new mesh has not been looked at
+            pass
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
         return found
 
