@@ -54,7 +54,8 @@ def add_mesh_errors(state: State) -> list[str]:
     finally:
         Stepper(state.stage.scene).restore_last_stroke(state)
     changes = relative_errors(mine, other)
-    changes[DEPTH] = max(changes[DEPTH], _change_where_deepest(here, there))
+    if DEPTH in changes:  # something wears
+        changes[DEPTH] = max(changes[DEPTH], _change_where_deepest(here, there))
     state.mesh_errors = {f"{name[:-4]} {BY_HALVED}": REMAINS * change for name, change in changes.items()}
     state.first_wear = _largest_wear(mine)
     return []

@@ -57,7 +57,7 @@ def plot(folder: Path | str, *, share: tuple[int, int] = (0, 1)) -> list[Path]:
         figures["laws"] = law_figure
     if worn_counters(result):
         figures["counter_surface"] = counter_figure
-    if is_mirrored(result.outline):
+    if result.snapshots[-1].profiles and is_mirrored(result.outline):
         figures["asymmetry"] = asymmetry_figure
     if sections(result):
         figures |= {"torn_profiles": face_figure, "ridge_evolution": ridge_figure}

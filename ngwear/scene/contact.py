@@ -41,7 +41,8 @@ class Contact:
     force : float or None
         Force that presses the surface on [N, or N/mm in plane strain]; default: its position is given instead.
     refine : bool
-        Whether the mesh is refined in this contact; it always is if the contact wears.
+        Whether the mesh is refined in this contact, and results hold its pressures; it always is if the contact wears,
+        and all contacts are if none wears and none asks for it.
 
     Raises
     ------

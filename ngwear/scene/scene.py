@@ -212,5 +212,5 @@ class Scene:
 
     @property
     def followed(self) -> tuple[Contact, ...]:
-        """Contacts in which the mesh is refined."""
-        return tuple(c for c in self.contacts if c.refine or c.wears)
+        """Contacts in which the mesh is refined, and which results hold: all if none wears and none asks for it."""
+        return tuple(c for c in self.contacts if c.refine or c.wears) or tuple(self.contacts)

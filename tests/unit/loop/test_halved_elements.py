@@ -133,3 +133,12 @@ def test_a_large_error_is_a_warning():
     assert summary["error estimates"] == {DEPTH: 1.1 * LARGE, PEAK: 0.9 * LARGE}
     (warning,) = summary["warnings"]
     assert warning.startswith("the stated error of the maximum depth is 28 %")
+
+
+def test_a_part_that_nothing_wears_has_those_of_its_pressures_and_pictures(ring, tmp_path):
+    still = tuple(replace(contact, specific_wear_rate=0.0) for contact in ring.contacts)
+    result = run(replace(ring, contacts=still), out=tmp_path / "out", progress=False, errors=lambda *_: None)
+    assert BY_DEPTH not in result.summary["error estimates"]
+    assert 0 < result.summary["error estimates"][BY_PEAK] < 0.1
+    assert result.summary["last inward air wall peak pressure [MPa]"] > 5.0  # all contacts are looked at
+    assert {path.stem for path in (tmp_path / "out").glob("*.png")} >= {"section", "profiles", "peak_pressure"}

@@ -28,6 +28,8 @@ def test_shipped_seal_is_read(seal):
     assert [s.direction for s in seal.program.cycle] == [-1.0, 1.0]
     assert seal.part.material.shear_modulus == pytest.approx(16.0)
     assert [c.name for c in seal.followed] == ["rod"]
+    still = tuple(replace(contact, specific_wear_rate=0.0) for contact in seal.contacts)
+    assert replace(seal, contacts=still).followed == still  # where nothing wears, all contacts are looked at
 
 
 # (piece of the scene, what it becomes, place, value, words of the remedy)
