@@ -123,7 +123,8 @@ class ConvergenceError(NgwearError):
 
     def __init__(self, message: str, report: Any = None, *, cause: str = "") -> None:
         self.report, self.cause = report, cause
-        super().__init__(message if report is None else f"{message}\n{report}")
+        said = report is None or message.endswith(f"\n{report}")
+        super().__init__(message if said else f"{message}\n{report}")
 
 
 class ResultError(NgwearError):

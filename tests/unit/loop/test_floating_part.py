@@ -96,6 +96,31 @@ def test_a_part_is_held_by_walls_that_squeeze_it():
     assert free_directions(walls_at(scene, 0.01, 1.99)) == free_directions(walls_at(scene, 0.0, 1.99)) == ()
 
 
+def test_a_cylinder_is_pressed_by_a_force_between_two_plates():
+    """Hertz: p0 = sqrt(F E* / (pi R)). A surface under force holds nothing where it is drawn."""
+    force, radius, rubber = 0.3, 1.0, nw.NeoHooke(shear=1.0, bulk_modulus=1000.0)
+    angle = np.linspace(0.0, 2 * np.pi, 65)[:-1]
+    points = np.column_stack([radius * np.cos(angle), radius * (1 + np.sin(angle))])
+    plates = (
+        nw.Contact("low", surface=nw.Plane(point=(0.0, 0.0), normal_vector=(0.0, 1.0)), slides=False),
+        nw.Contact("high", surface=nw.Plane(point=(0.0, 1.7), normal_vector=(0.0, -1.0)), slides=False, force=force),
+    )
+    scene = nw.Scene(
+        "cylinder between plates",
+        nw.Part(nw.Outline(points, ["skin"] * 64, [False] * 64), material=rubber),
+        contacts=plates,
+        axisymmetric=False,
+        program=nw.Program(strokes=1, cycle=[nw.Stroke("rest", direction=0, travel=1.0)]),
+        accuracy=nw.Accuracy.preset("engineering"),
+    )
+    assert free_directions(scene) == (0, 1)
+    summary = run(scene, figures=False).summary
+    exact = np.sqrt(force * rubber.plane_strain_modulus / (np.pi * radius))
+    for name in ("low", "high"):
+        assert summary[f"last rest {name} peak pressure [MPa]"] == pytest.approx(exact, rel=0.02)
+    assert summary["warnings"] == []
+
+
 @pytest.mark.parametrize("folder", ["rod_seal", "shaft_on_plate", "starving_lubrication", "torn_seal"])
 def test_shipped_parts_are_held(folder):
     assert free_directions(nw.read_scene(f"geometries/{folder}/scene.toml")) == ()
