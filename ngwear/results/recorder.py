@@ -6,7 +6,6 @@ import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +21,9 @@ from ngwear.geometry.cells import Fate
 from ngwear.geometry.outline import Outline
 from ngwear.geometry.sizing import divided
 from ngwear.results.kept_sections import KeptSections
+from ngwear.results.resting import elsewhere, resting, rests
 from ngwear.results.result_file import CONTACT, PART, WEAR_RATE, Snapshot
 from ngwear.results.surface_text import surface_text
-from ngwear.scene.holding import free_directions
 from ngwear.scene.scene import Scene
 from ngwear.units import UNITS, energy_unit, force_unit
 
@@ -43,7 +42,6 @@ POINTS_ALONG = 200  # number of points for the depth on a straight edge as long 
 LOST = {Fate.TORN: "tearing", Fate.DISTORTED: "distortion", Fate.LOOSE: "coming loose"}
 LEAK, EDGE = "leak pressure [MPa]", "element edge in contact [mm]"
 WITHOUT_STEPS = "maximum depth without the error of the steps [mm]"
-PUSHES = 1e-6  # of the largest force: a push below is rounding
 TORN = "area lost in all by tearing [-]"  # part of the error of the total lost area
 LOST_AREAS = LOST | {Fate.WORN: "merging"}  # lost areas; merging of surface nodes changes the area a little
 
@@ -55,14 +53,6 @@ def depths(before: Outline, after: Outline) -> Array:
     segments = STRtree(linestrings(np.stack([after.points, np.roll(after.points, -1, axis=0)], axis=1)))
     _, found = segments.query_nearest(points(before.points), return_distance=True, all_matches=False)
     return found
-
-
-def _rests_on(scene: Scene, forces: Mapping[str, Array], axis: int) -> str:
-    """Name of the contact whose pressure pushes the part most along an axis; "nothing" if none does."""
-    push = {contact.name: abs(float(forces[contact.name][axis])) for contact in scene.contacts}
-    name = max(push, key=lambda contact: push[contact])
-    least = PUSHES * max(float(np.abs(force).max()) for force in forces.values())
-    return name if push[name] > least else "nothing"
 
 
 def measured_at(scene: Scene) -> Outline:
@@ -166,10 +156,7 @@ class Recorder:
             row[f"{name} counter-surface worn area [mm^2]"] = counter.area
         for name, force in report.forces.items():
             row[f"{name} force x [{unit}]"], row[f"{name} force y [{unit}]"] = (float(f) for f in force)
-        for axis in free_directions(scene):
-            row[f"rests along {'xy'[axis]} on [-]"] = _rests_on(scene, report.forces, axis)
-        if free_directions(scene):
-            row["section turned by [deg]"] = report.turned
+        row |= resting(scene, report.forces, report.turned)
         for name, heat in report.heats.items():
             row[f"{name} friction heat of the stroke [{energy_unit(scene.axisymmetric)}]"] = heat
         row |= {f"{name} margin of steady sliding [-]": margin for name, margin in report.margins.items()}
@@ -276,7 +263,7 @@ class Recorder:
             under = max(scene.program.cycle, key=lambda stroke: stroke.highest_pressure).name
             last = [row for row in self.rows if row["kind [-]"] == under][-1]
             out |= {LEAK: last[LEAK], "leaks first at": last["leaks first at [-]"]}
-        out |= self._rests()
+        out |= rests(scene, self.rows)
         if scene.fluid is not None:
             out["blow-by"] = self.blow_by
         worst = max(ledger.worn, 1e-300)
@@ -307,21 +294,10 @@ class Recorder:
             out["error estimates"][TORN] = torn / max(out["area lost in all [mm^2]"], 1e-300)
         return out
 
-    def _rests(self) -> dict[str, Any]:
-        """Where a part that nothing holds rests in each kind of stroke, and where it moves over in the cycle."""
-        out: dict[str, Any] = {}
-        for axis in free_directions(self.scene) if self.rows else ():
-            column = f"rests along {'xy'[axis]} on [-]"
-            for stroke in self.scene.program.cycle:
-                rows = [row for row in self.rows if row["kind [-]"] == stroke.name]
-                out[f"{stroke.name}, {column[:-4]}"] = rows[-1][column]
-            moves = [b["stroke [-]"] for a, b in pairwise(self.rows) if a[column] != b[column]]
-            out[f"first stroke that moves the part along {'xy'[axis]}"] = moves[0] if moves else None
-        return out
-
     def _warnings(self) -> list[str]:
-        """Warnings for the reader of the results: what solves show, unstable sliding."""
+        """Warnings for the reader of the results: what solves show, a part that comes elsewhere, unstable sliding."""
         found = [f"{sentence} (stroke {stroke})" for _, stroke, sentence in self.findings.values()]
+        found += elsewhere(self.scene, self.rows)
         for spec in self.scene.contacts:
             column = f"{spec.name} margin of steady sliding [-]"
             least = min((row[column] for row in self.rows if row.get(column, 0.0) < 0.0), default=0.0)
