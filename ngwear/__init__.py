@@ -32,7 +32,7 @@ _NAMES = {
     "ngwear.scene.pin_scene": "Pin PinMesh PinScene",
     "ngwear.scene.read_scene": "read_scene",
     "ngwear.materials": "NeoHooke MooneyRivlin PronySeries WLF Arrhenius",
-    "ngwear.surfaces": "Plane Cylinder rod bore",
+    "ngwear.surfaces": "Plane Corner Cylinder rod bore",
     "ngwear.laws": "Constant Lubrication Stribeck ByPressure Product WearRate "
     "PowerWear ThresholdWear SaturatingWear FrictionalEnergyWear",
     "ngwear.laws.damage": "TensileNormalStress MaximumPrincipalStress StrainEnergyDensity Fatigue",

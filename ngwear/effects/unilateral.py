@@ -191,13 +191,16 @@ class UnilateralContact(Term):
             slope, rest, steepest = self.pressure_wear.tangent(unknowns.state[self.pressure_name], stretch)
             kappa, rest, steepest = kappa * slope, kappa * rest, kappa * steepest
         self._augmentation = c = 1 / (0.5 * self.softness * give + steepest)
-        p = unknowns.trial[self.pressure_name]
-        gap = self.gap(unknowns.trial)
         worn = None if self.worn is None else self.worn / stretch
         if rest is not None:
             worn = rest if worn is None else worn + rest
-        pushed = p - c * (gap if worn is None else gap + worn)
+        p = unknowns.trial[self.pressure_name]
+        pushed, now = (
+            fields[self.pressure_name] - c * (self.gap(fields) if worn is None else self.gap(fields) + worn)
+            for fields in (unknowns.trial, unknowns.state)
+        )
         closure = 1 + c * (1e-6 * give + kappa / stretch)
+        self._acts = ng.IfPos(now, now / closure, 0.0)
         active = ng.IfPos(pushed, pushed * pushed / closure, 0.0)
         if self.rounding is not None:
             active = self.rounding.choose(self.rounding.square(pushed) / closure, active)
@@ -232,11 +235,14 @@ class UnilateralContact(Term):
         return 1.0 if self.pressure_wear is None else self.pressure_wear.factor(pressure)
 
     def force(self) -> Array:
-        """Resultant of the contact pressure on the rubber; [N], or N/mm in plane strain."""
-        p = self._state[self.pressure_name]
+        """Resultant of the contact pressure on the rubber; [N], or N/mm in plane strain.
+
+        It is that of the equilibrium, ``int max(0, P - c g) n dA``. The pressure P is equal to it on each element in
+        the mean only, which is not enough where the normal n turns within an element.
+        """
+        acts = self._acts * self._kinematics.weight
         normal = self.surface.normal(*self.place(self._state))
-        weight = self._kinematics.weight
-        return np.array([ng.Integrate(p * n * weight * self.measure(), self._body.mesh) for n in normal])
+        return np.array([ng.Integrate(acts * n * self.measure(), self._body.mesh) for n in normal])
 
     def attempt(self, number: int) -> bool:
         self.softness.Set(SOFTNESS[number])

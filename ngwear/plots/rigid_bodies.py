@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ngwear.plots.counter import ALONG, DEPTH
 from ngwear.plots.sections import Box
 from ngwear.results.section import SectionContact
-from ngwear.surfaces import Cylinder, Plane, RigidSurface
+from ngwear.surfaces import Corner, Cylinder, Plane, RigidSurface
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,6 +47,13 @@ def body(surface: RigidSurface, contact: SectionContact, profile: Profile, windo
         front = foot + s[:, None] * along - depth(s)[:, None] * normal
         back = foot + np.array([[reach], [-reach]]) * along - reach * normal
         shape = Polygon(np.vstack([front, back]))
+    elif isinstance(surface, Corner):
+        foot, r = np.array(surface.point) + contact.moved, surface.radius
+        n, s = np.array(surface.normal_vector), np.array(surface.side)
+        angle = np.linspace(0.0, np.pi / 2, AROUND // 4)[:, None]
+        edge = foot - r * (n + s) + r * (np.cos(angle) * n + np.sin(angle) * s)
+        far = 2 * float(np.linalg.norm(np.abs(np.array(window) - foot).max(axis=0))) + r
+        shape = Polygon(np.vstack([foot - far * s, edge, foot - far * n, foot - far * (n + s)]))
     elif isinstance(surface, Cylinder):
         angle = np.linspace(-np.pi, np.pi, AROUND, endpoint=False)
         px, py = surface.push

@@ -7,9 +7,9 @@ from dataclasses import fields
 from typing import Any
 
 from ngwear.files.hdf5 import name_of
-from ngwear.surfaces import Cylinder, Plane, RigidSurface
+from ngwear.surfaces import Corner, Cylinder, Plane, RigidSurface
 
-KNOWN: dict[str, type[RigidSurface]] = {"plane": Plane, "cylinder": Cylinder}
+KNOWN: dict[str, type[RigidSurface]] = {"plane": Plane, "corner": Corner, "cylinder": Cylinder}
 
 
 def surface_text(surface: RigidSurface) -> str:

@@ -25,7 +25,7 @@ from ngwear.scene.read_material import read_arms, read_material
 from ngwear.scene.read_pin import pin_scene
 from ngwear.scene.scene import Scene
 from ngwear.scene.toml_values import coordinate, get, known, record, subtable, tables
-from ngwear.surfaces import Cylinder, Plane, RigidSurface, bore, rod
+from ngwear.surfaces import Corner, Cylinder, Plane, RigidSurface, bore, rod
 
 TABLES = {
     *("scene", "contour", "material", "contact", "fluid", "support"),
@@ -45,10 +45,11 @@ _SURFACES: dict[str, tuple[Callable[..., RigidSurface], set[str]]] = {
     "rod": (rod, {"diameter"}),
     "bore": (bore, {"diameter"}),
     "plane": (_rename(Plane, normal="normal_vector"), {"point", "normal"}),
+    "corner": (_rename(Corner, normal="normal_vector"), {"point", "normal", "side", "radius"}),
     "cylinder": (Cylinder, {"centre", "radius", "push"}),
 }
 _SURFACE_OPTIONAL = {"push"}
-_PAIRS = {"point", "normal", "centre", "push"}
+_PAIRS = {"point", "normal", "side", "centre", "push"}
 
 
 def read_scene(path: Path | str) -> Scene | PinScene:

@@ -15,7 +15,7 @@ from ngwear.laws import Constant, Lubrication, WearRate
 from ngwear.materials import PronySeries
 from ngwear.scene.read_laws import FRICTION_LAWS, WEAR_LAWS
 from ngwear.scene.read_material import MATERIALS
-from ngwear.surfaces import Cylinder, Plane
+from ngwear.surfaces import Corner, Cylinder, Plane
 
 Table = dict[str, Any]
 
@@ -155,9 +155,13 @@ def _surface(place: str, surface: Any, *, axisymmetric: bool) -> Table:
         if axisymmetric and x == 0 and nx == 0:
             return {"type": "rod" if ny > 0 else "bore", "diameter": 2 * y}
         return {"type": "plane", "point": [x, y], "normal": [nx, ny]}
+    if type(surface) is Corner:
+        table = {"type": "corner", **_given(surface)}
+        return {"normal" if key == "normal_vector" else key: value for key, value in table.items()}
     if type(surface) is Cylinder:
         return {"type": "cylinder", **_given(surface)}
-    raise SceneError(place, surface, "a scene file can only hold Plane and Cylinder: run the scene from Python")
+    remedy = "a scene file can only hold Plane, Corner and Cylinder: run the scene from Python"
+    raise SceneError(place, surface, remedy)
 
 
 def _deactivation(deactivation: Any) -> Table | None:

@@ -107,6 +107,12 @@ CASES: dict[str, Case] = {
     "confined_ring": Case(
         "ngwear.verify.confined_ring", 10, "a ring in a closed groove: its own pressure and the fluid's"
     ),
+    "extrusion_gap": Case(
+        "ngwear.verify.extrusion_gap",
+        2.5,
+        "a block that comes into a gap with a row of cracks in closed form",
+        quick=True,
+    ),
     "o_ring_squeeze": Case("ngwear.verify.o_ring_squeeze", 8, "an O-ring between two plates with Lindley's formula"),
     "rolling_ring": Case(
         "ngwear.verify.rolling_ring", 14, "an O-ring that a rod rolls, with the couple that turns a ring"

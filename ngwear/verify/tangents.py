@@ -36,7 +36,7 @@ from ngwear.geometry.outline import Outline
 from ngwear.geometry.sheet import Sheet
 from ngwear.laws import ByPressure, FrictionalEnergyWear, FrictionLaw, PowerWear, SaturatingWear, ThresholdWear, WearLaw
 from ngwear.materials import MooneyRivlin, NeoHooke, PronySeries
-from ngwear.surfaces import Cylinder, Plane, RigidSurface, Sphere
+from ngwear.surfaces import Corner, Cylinder, Plane, RigidSurface, Sphere
 from ngwear.verify.base import Check, Stopwatch
 from ngwear.verify.builders import meshed
 
@@ -65,6 +65,7 @@ KINEMATICS = SECTION | SOLID
 ROUNDED = 0.5  # of G: some points are on the rounded part
 SURFACES = {
     "plane": Plane(point=(WIDTH / 2, TOP), normal_vector=(0.3, -1.0)),
+    "corner": Corner(point=(WIDTH / 2, TOP - 0.1), normal_vector=(0.0, -1.0), side=(1.0, 0.0), radius=0.5),
     "cylinder": Cylinder(centre=(0.5, TOP + 2.5), radius=3.0),
 }
 BALLS = {"ball": Sphere(centre=(-1.5, 0.0, TOP + 2.5), radius=3.0, track_radius=8.0)}

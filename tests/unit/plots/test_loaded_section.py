@@ -18,7 +18,7 @@ from ngwear.results.result_file import read_result
 from ngwear.results.section import FIELDS, Section, SectionContact
 from ngwear.results.surface_text import surface_of, surface_text
 from ngwear.scene.read_scene import read_scene
-from ngwear.surfaces import Cylinder, Plane, Sphere, rod
+from ngwear.surfaces import Corner, Cylinder, Plane, Sphere, rod
 
 WINDOW = (np.array([-3.0, -3.0]), np.array([3.0, 3.0]))
 HERE = SectionContact(np.zeros((2, 2)), np.zeros(2), np.array([[0, 1]]), np.zeros(2), 0.0)
@@ -177,8 +177,18 @@ def test_surfaces_stand_where_they_have_moved_to_and_are_worn():
     assert body(Cylinder(centre=(0.0, 0.0), radius=1.0), moved, half, WINDOW).area < disc.area
 
 
+def test_a_corner_is_a_quarter_of_the_plane_without_what_its_rounding_takes_away():
+    corner = Corner(point=(0.0, -1.0), normal_vector=(1.0, 0.0), side=(0.0, -1.0), radius=1.0)
+    quarter = body(corner, HERE, {}, WINDOW)  # left of x = 0, above y = -1
+    assert quarter.bounds == pytest.approx((-3.0, -1.0, 0.0, 3.0))
+    assert quarter.area == pytest.approx(3.0 * 4.0 - (1 - np.pi / 4), rel=1e-4)
+    inside = np.array([[-0.5, 2.0], [-2.5, -0.9], [-0.4, -0.6]])
+    assert (corner.gap(*inside.T) < 0).all()
+
+
 def test_surfaces_are_told_in_a_file():
-    for surface in (rod(20.0), Cylinder(centre=(1.0, 2.0), radius=3.0, push=(0.0, 1.0))):
+    corner = Corner(point=(1.0, 2.0), normal_vector=(1.0, 0.0), side=(0.0, -1.0), radius=0.1)
+    for surface in (rod(20.0), corner, Cylinder(centre=(1.0, 2.0), radius=3.0, push=(0.0, 1.0))):
         assert surface_of(surface_text(surface)) == surface
     assert surface_of(surface_text(Sphere(centre=(0.0, 0.0, 1.0), radius=1.0))) is None
     assert body(Sphere(centre=(0.0, 0.0, 1.0), radius=1.0), HERE, {}, WINDOW).is_empty

@@ -8,6 +8,7 @@ from conftest import edited
 from ngwear.errors import GeometryError, SceneError
 from ngwear.scene.program import Program, Stroke
 from ngwear.scene.read_scene import read_scene
+from ngwear.surfaces import Corner
 
 ROLLER = 'surface = { type = "cylinder", centre = [2.0, 3.99], radius = 2.0, push = [0.0, -1.0] }'
 EDGES = 'edges = ["top"]'
@@ -212,3 +213,12 @@ def test_a_scene_that_another_process_was_handed_can_be_changed_there(sheet):
     """An infinite default is another object there."""
     program = replace(sheet.program, rest=float("inf"))
     assert replace(pickle.loads(pickle.dumps(program)), strokes=2).rest == math.inf
+
+
+def test_a_wall_may_end_at_a_gap(tmp_path, write_sheet):
+    wall = 'surface = { type = "corner", point = [2.0, 2.0], normal = [0.0, -2.0], side = [1.0, 0.0], radius = 0.1 }'
+    scene = read_scene(write_sheet(tmp_path, (ROLLER, wall)))
+    (contact,) = scene.contacts
+    assert contact.surface == Corner(point=(2.0, 2.0), normal_vector=(0.0, -1.0), side=(1.0, 0.0), radius=0.1)
+    scene.write(tmp_path / "again.toml")
+    assert read_scene(tmp_path / "again.toml").contacts == scene.contacts
