@@ -36,26 +36,33 @@ from ngwear.verify.base import Check, Stopwatch
 
 GAP, RADIUS, HALF, HEIGHT = 0.1, 0.01, 0.5, 1.0
 MODULUS, PRESSURE = 1.0, 0.01
-EDGE, COARSE = 0.005, 0.1
+ACCURACY = Accuracy(patch=0.005, coarse=0.1, mounting=0.005)
 AWAY = 0.2, 0.45  # from the gap's middle: where the pressure on the wall is compared
 TOLERANCE, BALANCE = 0.01, 1e-5
 
 
-def scene() -> Scene:
-    """The block under pressure."""
-    corner = Corner(point=(GAP, HEIGHT), normal_vector=(0.0, -1.0), side=(-1.0, 0.0), radius=RADIUS)
+def scene(
+    gap: float = GAP,
+    radius: float = RADIUS,
+    *,
+    half: float = HALF,
+    pressure: float = PRESSURE,
+    accuracy: Accuracy = ACCURACY,
+) -> Scene:
+    """The block under pressure; lengths [mm], half of the gap and of the distance between two, and pressure [MPa]."""
+    corner = Corner(point=(gap, HEIGHT), normal_vector=(0.0, -1.0), side=(-1.0, 0.0), radius=radius)
     return Scene(
         "extrusion gap",
         Part(
-            Outline.rectangle((0.0, HALF), (0.0, HEIGHT)),
+            Outline.rectangle((0.0, half), (0.0, HEIGHT)),
             material=NeoHooke(shear=MODULUS, bulk_modulus=1e4 * MODULUS),
         ),
         contacts=[Contact("wall", edges=("top",), surface=corner, slides=False, refine=True)],
         axisymmetric=False,
         supports=[Support(edges=("left", "right"), y=False)],
         fluid=Fluid(edges=("bottom",), inlet=("bottom",)),
-        program=Program(strokes=1, cycle=[Stroke("pressed", direction=0, travel=1.0, pressure=PRESSURE)]),
-        accuracy=Accuracy(patch=EDGE, coarse=COARSE, mounting=EDGE),
+        program=Program(strokes=1, cycle=[Stroke("pressed", direction=0, travel=1.0, pressure=pressure)]),
+        accuracy=accuracy,
     )
 
 

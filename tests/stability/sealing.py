@@ -20,15 +20,18 @@ from ngwear.geometry.outline import Outline
 from ngwear.loop.mounting import mount
 from ngwear.loop.refinement import mounting_field
 from ngwear.loop.stage import Stage
+from ngwear.loop.stepper import Stepper
 from ngwear.materials import MooneyRivlin
+from ngwear.scene.accuracy import Accuracy
 from ngwear.surfaces import Plane, rod
-from ngwear.verify import ring
+from ngwear.verify import extrusion_gap, ring
 from ngwear.verify.builders import mean, meshed
 from ngwear.verify.closed_forms import expanding_pressure
 from ngwear.verify.rod_seal import imbalance, shipped_scene
 
 RUBBER = MooneyRivlin(c10=0.6, c01=0.15, bulk_modulus=1.5e6)
 PRESS = "fluid pressure [MPa]"
+GAPS, ROUNDED = (0.05, 0.1, 0.2, 0.3), 0.05  # mm
 
 
 def on_rod(interference, mu) -> list[Finding]:
@@ -84,6 +87,17 @@ def seal_turned_round(pressure_on) -> list[Finding]:
     return found
 
 
+def extruded(gap, ratio) -> list[Finding]:
+    """A block pressed against a wall with a gap; how far it comes in, in half-widths of the gap, is p/2G at first."""
+    pressure_on, half = ratio * extrusion_gap.MODULUS, 1.0
+    scene = extrusion_gap.scene(
+        gap / 2, ROUNDED, half=half, pressure=pressure_on, accuracy=Accuracy.preset("engineering")
+    )
+    stage = Stepper(scene).start().stage
+    wall = stage.contacts["wall"]
+    return [*body(stage.problem), near("force on the wall", -float(wall.force()[1]), pressure_on * half, 1e-3)]
+
+
 def unheld(held, mu) -> list[Finding]:
     """A block under a lid that a force presses on, and something that does not hold it."""
     body_ = meshed(Outline.rectangle((0.0, 2.0), (0.0, 1.0)), 0.5)
@@ -106,6 +120,14 @@ def cases() -> list[Case]:
     ]
     seal = "the shipped seal turned round in a step"
     found += [Case(seal, f"0 to {p:g} MPa and friction reversed", partial(seal_turned_round, p)) for p in (0.5, 2.0)]
+    found += [
+        Case("extrusion gap", f"{gap:g} mm, p/G {ratio:g}", partial(extruded, gap, ratio))
+        for gap in GAPS
+        for ratio in (1, 3)
+    ]
+    found += [
+        Case("extrusion gap", f"{gap:g} mm, p/G 20", partial(extruded, gap, 20), "no equilibrium") for gap in GAPS[1:]
+    ]
     bottom = [FixedEdges(("bottom",))]
     found += [
         Case(
