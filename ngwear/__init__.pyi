@@ -50,6 +50,7 @@ from ngwear.scene.program import Stroke as Stroke
 from ngwear.scene.read_scene import read_scene as read_scene
 from ngwear.scene.scene import Scene as Scene
 from ngwear.sliding.run_pin import PinResult as PinResult
+from ngwear.surfaces import Corner as Corner
 from ngwear.surfaces import Cylinder as Cylinder
 from ngwear.surfaces import Plane as Plane
 from ngwear.surfaces import bore as bore
