@@ -110,7 +110,7 @@ def _overlaps(
                 edges = np.broadcast_to(length, depth.shape)
                 coarse = (depth > 0) & (advice == COARSE)
                 places = np.column_stack([before[coarse], edges[coarse]])
-                if coarse.any() and deep < edges[worst]:
+                if coarse.any() and deep < edges[worst]:  # deeper, it is no bulge between nodes
                     places = _driving(profiles[name] if name in profiles else contact.profile(), places)
                 yield Finding(f"overlap {name} {edge}", deep, f"{where}{advice}", places)
 
