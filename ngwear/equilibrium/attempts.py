@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import replace
 
 import ngsolve as ng
@@ -23,10 +24,11 @@ SHARP = 1e-4  # of G: from here to the corner itself
 FIRST, LOOSE = 1.0, 2e-4
 WEAKER, FAR = 4.0, 0.1  # factor between two steps; motion of a step, over the section's size, that is aimed at
 ABOVE, GROWS = 2.0, 1.2  # times a strength that failed: the least one; by what that falls in the next step, then faster
-STIFFEST = 2000.0  # in G / L, too: a part that springs of this strength do not hold back enough does not move on
+STIFFEST = 2000.0  # times the first ones: a part that such springs do not hold back enough does not move on
 STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a strength: an equilibrium is near
-# Of G / L: the first springs hold the outline while the section beneath finds its stresses, the last hardly anything.
-STRENGTHS = (1000.0, 30.0, 1.0)
+# Of G / L, and of G: springs that hold the outline while the section beneath finds its stresses, and the rounding
+# meanwhile. With more of it a part that friction holds creeps: an X-ring by a quarter of its section, with 0.1.
+FIRM, SLIGHTLY = 1e4, 0.02
 QUARTER = 90.0  # degrees: from there on a ring resists turning with a moment that falls
 FAILURES, MOST = 4, 400  # failures in a row, and iterations, until it ends
 
@@ -114,18 +116,19 @@ def _by_rounded_laws(problem: Problem, options: NewtonOptions) -> Report:
         _round_off(problem, 0.0)
 
 
-def _move_over(problem: Problem, options: NewtonOptions) -> Report:
+def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST) -> Report:
     """Follow the part through states out of equilibrium to the next equilibrium.
 
-    Each step holds it back by springs from its state before, weaker ones while that is easy, none in the end
+    Each step holds it back by springs from its state before, weaker ones while that is easy, none in the end; the first
+    ones have the strength ``first``
     (pseudo-transient continuation: Kelley & Keyes, *SIAM J. Numer. Anal.* 35 (1998) 508).
     """
     place = problem.part(DISPLACEMENT)
     before = problem.state.vec.CreateVector()
-    strength, bound, total, failures, eased = FIRST, 0.0, 0, 0, 0
+    strength, bound, total, failures, eased = first, 0.0, 0, 0, 0
     report = Report(Outcome.STALLED)
     try:
-        while failures <= FAILURES and total <= MOST and strength <= STIFFEST:
+        while failures <= FAILURES and total <= MOST and strength <= STIFFEST * first:
             before.data = problem.state.vec
             _hold_back(problem, strength)
             report = iterate(problem, options)
@@ -157,40 +160,38 @@ def _move_over(problem: Problem, options: NewtonOptions) -> Report:
 
 
 def let_go(problem: Problem) -> list[Report]:
-    """Bring the present state near equilibrium: springs hold the outline at where it was, weaker ones each time.
+    """Bring the present state to equilibrium: springs hold the outline at where it was, weaker ones each time.
 
-    For a state carried over to a new mesh. The corners of the laws are rounded off meanwhile, by the first of
-    ``ROUNDED`` with which all solves converge, so that contact does not alternate there. Only a part with room to move
-    has such springs. If they fail, the state is the present one, and the last report is a failure's.
+    For a state carried over to a new mesh. The corners of the laws are slightly rounded off meanwhile, so that contact
+    does not alternate there, and sharp in the end. Only a part with room to move has such springs. If they fail, the
+    state is the present one; if the sharp laws fail, that of the rounded ones. The last report is then a failure's.
     """
-    reports: list[Report] = []
     for term in problem.terms:
         term.prepare()
         term.attempt(0)
-    try:
-        with problem.threads():
-            for rounded in ROUNDED:
-                _round_off(problem, rounded)
-                reports += _let_go(problem)
-                if reports[-1].converged:
-                    break
-    finally:
-        _hold_back(problem, 0.0)
-        _round_off(problem, 0.0)
-    return reports
-
-
-def _let_go(problem: Problem) -> list[Report]:
-    """The same with the laws as they are; after a failure the state is the first one."""
+    before = problem.state.vec.CreateVector()
     reports: list[Report] = []
-    vector = problem.state.vec.FV().NumPy()
-    before = vector.copy()
-    for strength in STRENGTHS:
-        _hold_back(problem, strength)
-        reports.append(iterate(problem, NewtonOptions(damped=True)))
+
+    def bring(solved: Callable[[], Report]) -> bool:
+        before.data = problem.state.vec
+        reports.append(solved())
         if not reports[-1].converged:
-            vector[:] = before
-            break
+            problem.state.vec.data = before
+        return reports[-1].converged
+
+    def sharp() -> Report:
+        return iterate(problem, NewtonOptions())
+
+    with problem.threads():
+        if bring(sharp):
+            return reports
+        try:
+            _round_off(problem, SLIGHTLY)
+            held = bring(lambda: _move_over(problem, NewtonOptions(damped=True), first=FIRM))
+        finally:
+            _round_off(problem, 0.0)
+        if held:
+            bring(sharp)
     return reports
 
 

@@ -3,27 +3,33 @@
 from __future__ import annotations
 
 from ngwear.equilibrium.attempts import let_go
+from ngwear.equilibrium.stepping import StepOptions
 from ngwear.loop.state import State
 
 HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
 
 def settle_carried(state: State) -> None:
-    """Let go the end of each stroke of the cycle, as carried over to a new mesh, from the last one on.
+    """Let go the end of each stroke of the cycle, as carried over to a new mesh.
 
-    A point that sticks at the end of the last stroke stays where it is.
+    A point that sticks at the end of a stroke stays where it is.
     """
     stage, cycle = state.stage, state.stage.scene.program.cycle
     vector = stage.problem.state.vec.FV().NumPy()
-    for i in range(-1, len(cycle) - 1):
-        phase, before = state.phases[i], state.phases[i if i < 0 else i - 1]
-        stage.begin(before.vector)
-        stage.leave_fluid(before.left)
-        stage.problem.set_loads(stage.stroke_loads(cycle[i]))
+    for i, (phase, stroke) in enumerate(zip(state.phases, cycle, strict=True)):
+        stage.problem.set_loads(stage.stroke_loads(stroke))
+        stage.begin(phase.vector)
+        stage.leave_fluid(state.phases[i - 1].left)
         stage.let_fluid_pass(phase.passed)
         vector[:] = phase.vector
         for term in stage.problem.terms:
             term.refresh()
-        for report in let_go(stage.problem):
-            state.work.count(report)
-        phase.vector = vector.copy()
+        for _ in range(StepOptions.max_updates):
+            reports = let_go(stage.problem)
+            for report in reports:
+                state.work.count(report)
+            if not reports[-1].converged:
+                break
+            phase.vector, phase.passed = vector.copy(), stage.fluid_passed()
+            if not any([term.refresh(solved=True) for term in stage.problem.terms]):
+                break

@@ -72,6 +72,8 @@ class Phase:
         fraction of the way and the equilibrium there.
     fewest : bool
         Whether half as many load steps have failed.
+    stays : bool
+        Whether the last solve began at this stroke's own end in the cycle before.
     failed, rests : int
         How often in a row a solve at once has failed, and how many solves are done in load steps before it is tried
         again.
@@ -88,6 +90,7 @@ class Phase:
     shares: dict[str, Array] | None = None
     path: list[tuple[float, Array]] = field(default_factory=list)
     fewest: bool = False
+    stays: bool = False
     failed: int = 0
     rests: int = 0
     passed: Array | None = None
@@ -160,9 +163,8 @@ class State:
     are empty unless damage accumulates over cycles. ``fine``, shape (k, 3), are places and the element edges that
     solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
     ``mesh_errors`` are relative errors by the mesh, by name, and ``first_wear`` [N] is the largest wear per cycle when
-    they were computed (``ngwear.loop.halved_elements``). ``anew``: whether the part had to be mounted anew on the last
-    mesh on which the states carried over did not settle at once. ``placed``: where it is mounted, from where it is
-    drawn [mm] (``ngwear.loop.placing``).
+    they were computed (``ngwear.loop.halved_elements``). ``placed``: where it is mounted, from
+    where it is drawn [mm] (``ngwear.loop.placing``).
     """
 
     stage: Stage
@@ -183,7 +185,6 @@ class State:
     refined: int = 0
     mesh_errors: dict[str, float] = field(default_factory=dict)
     first_wear: float = 0.0
-    anew: bool = False
     placed: tuple[float, float] = (0.0, 0.0)
 
     @property

@@ -27,7 +27,7 @@ from ngwear.loop.solution_checks import Finding
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State, StrokeReport, with_findings
 from ngwear.loop.stroke_report import stroke_report
-from ngwear.loop.stroke_solve import NeedsLoadStepsError, pass_stroke, settle_last_stroke, solve_stroke
+from ngwear.loop.stroke_solve import pass_stroke, settle_last_stroke, solve_stroke
 from ngwear.loop.wear_step import WearStep
 from ngwear.scene.boundary import GO_ON
 from ngwear.scene.scene import Scene
@@ -161,8 +161,7 @@ class Stepper:
     def settle_on_new_mesh(self, state: State) -> None:
         """Settle the cycle from the states carried over.
 
-        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew; anew first if
-        a load step of the last way fails, or if the last new mesh took that.
+        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew.
 
         Raises
         ------
@@ -176,15 +175,14 @@ class Stepper:
         except ConvergenceError as error:
             if not floats:
                 raise
-            anew_first = state.anew or not isinstance(error, NeedsLoadStepsError)
-            ways = [self._anew, self._held_back] if anew_first else [self._held_back, self._anew]
+            log.info("%s: held back", error)
+        ways = [self._held_back, self._anew]
         if state.stage.has_stick_slip:
             ways.append(self._settle_cycle)
         for way in ways:
             state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})
             try:
                 way(state)
-                state.anew = way == self._anew
                 return
             except ConvergenceError as error:
                 log.info("%s: on another way", error)

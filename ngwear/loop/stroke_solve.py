@@ -33,10 +33,6 @@ AHEAD = 2  # load steps of the last way that may be left out behind one that fai
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
 
-class NeedsLoadStepsError(ConvergenceError):
-    """A stroke has no equilibrium at once; load steps were not tried."""
-
-
 def solve_stroke(
     state: State,
     index: int,
@@ -49,15 +45,14 @@ def solve_stroke(
 ) -> int:
     """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
 
-    ``plan`` is the plan of the step, for the memory. With ``at_once`` load steps are tried only if the last solve on
-    another mesh needed them. With ``lowers`` a stroke whose friction the part does not bear is solved with less of it.
+    It is tried at once, from the end of the stroke before and from its own end in the last cycle, else in load steps.
+    ``plan`` is the plan of the step, for the memory. With ``at_once`` no load steps are tried. With ``lowers`` a stroke
+    whose friction the part does not bear is solved with less of it.
 
     Raises
     ------
-    NeedsLoadStepsError
-        If there is no equilibrium at once.
     ConvergenceError
-        If a load step fails.
+        If a load step fails, or there is no equilibrium ``at_once``.
     """
     stage, phase = state.stage, state.phases[index]
     problem = stage.problem
@@ -67,15 +62,20 @@ def solve_stroke(
     work, path, fewest = Work(), phase.path, phase.fewest
     stage.let_fluid_pass(phase.passed, after=stage.scene.program.cycle[index - 1])
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
-    if (phase.path and (phase.shares is None or phase.rests > 0)) or empties(state, index):
+    waits = phase.rests > 0 and (bool(phase.path) or phase.stays)
+    if waits or (phase.path and phase.shares is None) or empties(state, index):
         guesses = []  # on a new mesh a way that needed steps needs them again
     reports = (_solves(state, guess, work) for guess in guesses)
     last = None
     solved = any((last := report).converged for report in reports)
+    stays = False
     if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
-        if at_once and last is not None:
-            raise NeedsLoadStepsError(f"the {stroke.name} stroke needs load steps", last)
-        path, fewest = _by_steps(state, index, stroke, work, hard=repeats > 1 or (bool(stage.floats) and not lowers))
+        stays = not empties(state, index) and _stays(state, index, work)
+        if not stays:
+            if at_once:
+                raise ConvergenceError(f"the {stroke.name} stroke needs load steps", last)
+            hard = repeats > 1 or (bool(stage.floats) and not lowers)
+            path, fewest = _by_steps(state, index, stroke, work, hard=hard)
     state.work.add(work)
     rate = (vector - before) / repeats if repeats and not fresh else np.zeros_like(vector)
     shares = stage.shares(stroke)
@@ -91,12 +91,32 @@ def solve_stroke(
         shares=shares,
         path=path,
         fewest=fewest,
+        stays=stays,
         failed=failed,
         rests=rests,
         passed=stage.fluid_passed(),
         left=stage.fluid_left(),
     )
     return work.iterations
+
+
+def _stays(state: State, index: int, work: Work) -> bool:
+    """Solve a stroke from its own end in the last cycle: a point that sticks there stays where it was then.
+
+    For a part with room to move. Where points slide to and fro within a stroke, its end in the cycle before says which
+    way they slid last, which its beginning does not; so does it say which contacts the fluid has lifted.
+    """
+    stage, phase = state.stage, state.phases[index]
+    if not (stage.floats and stage.has_stick_slip):
+        return False
+    loads = stage.problem.get_loads()
+    stage.begin(phase.vector)
+    stage.let_fluid_pass(phase.passed)
+    report = _solves(state, phase.vector, work)
+    solved = report.converged and not (phase.rate is None and _passes_far(stage, phase.passed))
+    stage.begin(state.phases[index - 1].vector)  # slip and heat are those of the stroke
+    stage.problem.set_loads(loads)
+    return solved
 
 
 def _passes_far(stage: Stage, before: Array | None) -> bool:
@@ -169,10 +189,8 @@ def settle_last_stroke(state: State, *, at_once: bool = False) -> None:
 
     Raises
     ------
-    NeedsLoadStepsError
-        If there is no equilibrium ``at_once``.
     ConvergenceError
-        If there is no equilibrium nearby.
+        If there is no equilibrium nearby, or ``at_once``.
     """
     stage, last, work = state.stage, state.phases[-1], Work()
     stage.problem.set_loads(stage.stroke_loads(stage.scene.program.cycle[-1]))
@@ -181,7 +199,7 @@ def settle_last_stroke(state: State, *, at_once: bool = False) -> None:
     stage.leave_fluid(last.left)
     report = _solves(state, last.vector, work)
     if at_once and not report.converged:
-        raise NeedsLoadStepsError("the last stroke of the cycle needs load steps", report)
+        raise ConvergenceError("the last stroke of the cycle needs load steps", report)
     if not report.converged:
         _set_guess(state, last.vector)
         work.add(relax(stage.problem, StepOptions(first=0.25, smallest=HARDEST)))

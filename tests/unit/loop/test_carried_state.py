@@ -3,13 +3,12 @@
 import numpy as np
 import pytest
 
-from ngwear.equilibrium.attempts import STRENGTHS, let_go, solve
+from ngwear.equilibrium.attempts import let_go, solve
 from ngwear.errors import ConvergenceError
 from ngwear.loop import stepper
 from ngwear.loop.carried_state import settle_carried
 from ngwear.loop.finer_mesh import refine_everywhere
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.stroke_solve import NeedsLoadStepsError
 
 
 @pytest.fixture
@@ -39,12 +38,12 @@ def test_springs_that_let_go_leave_nothing_behind(carried):
     state, _ = carried
     problem = set_last(state)
     reports = let_go(problem)
-    assert all(report.converged for report in reports[-len(STRENGTHS) :])
+    assert reports[-1].converged
     near = problem.state.vec.FV().NumPy().copy()
     assert solve(problem).converged
     there = problem.state.vec.FV().NumPy()
     moved = np.abs(there - near)[: problem.fields["displacement"].space.ndof].max()
-    assert moved < 0.05 * problem.body.size
+    assert moved < 1e-5 * problem.body.size
     forces = state.stage.forces()  # without the springs they balance
     assert abs(sum(forces.values())[0]) < 1e-6 * max(np.abs(force).max() for force in forces.values())
 
@@ -60,7 +59,7 @@ def test_else_it_is_mounted_anew(ring, carried, monkeypatch):
     state, before = carried
 
     def fails(state):
-        raise NeedsLoadStepsError("no equilibrium")
+        raise ConvergenceError("no equilibrium")
 
     monkeypatch.setattr(stepper, "settle_carried", fails)
     settle = Stepper._settle_cycle
@@ -74,25 +73,21 @@ def test_else_it_is_mounted_anew(ring, carried, monkeypatch):
     monkeypatch.setattr(Stepper, "_settle_cycle", fails_at_once)
     Stepper(ring).settle_on_new_mesh(state)
     assert push(state) == pytest.approx(before, rel=0.05)
-    assert state.anew
-    monkeypatch.setattr(stepper, "settle_carried", None)  # on the next mesh it is not tried
-    Stepper(ring).settle_on_new_mesh(state)
-    assert push(state) == pytest.approx(before, rel=0.05)
 
 
-def test_at_once_anew_if_a_load_step_fails(ring, carried, monkeypatch):
-    state, before = carried
-    monkeypatch.setattr(stepper, "settle_carried", None)  # not tried
-    settle = Stepper._settle_cycle
-
-    def fails_on_the_last_way(self, state, at_once=False, lowers=False):
-        if at_once:
-            raise ConvergenceError("no equilibrium in a load step")
-        settle(self, state, lowers=lowers)
-
-    monkeypatch.setattr(Stepper, "_settle_cycle", fails_on_the_last_way)
-    Stepper(ring).settle_on_new_mesh(state)
-    assert push(state) == pytest.approx(before, rel=0.05)
+def test_springs_hold_a_state_from_which_a_solve_goes_elsewhere(carried):
+    """What the sharp laws do not settle at once, springs bring to an equilibrium nearby."""
+    state, _ = carried
+    problem = set_last(state)
+    vector = problem.state.vec.FV().NumPy()
+    place = problem.part("displacement")
+    start = vector.copy()
+    rng = np.random.default_rng(0)
+    vector[place] += 0.002 * problem.body.size * rng.standard_normal(place.stop - place.start)
+    reports = let_go(problem)
+    assert len(reports) == 3, "sharp laws at once, springs, sharp laws"
+    assert reports[-1].converged
+    assert np.abs(vector - start)[place].max() < 0.1 * problem.body.size
 
 
 def test_every_stroke_is_carried(carried):
