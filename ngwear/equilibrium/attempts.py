@@ -27,7 +27,7 @@ ABOVE, GROWS = 2.0, 1.2  # times a strength that failed: the least one; by what 
 STIFFEST = 2000.0  # times the first ones: a part that such springs do not hold back enough does not move on
 STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a strength: an equilibrium is near
 # Of G / L, and of G: springs that hold the outline while the section beneath finds its stresses, and the rounding
-# meanwhile. With more of it a part that friction holds creeps: an X-ring by a quarter of its section, with 0.1.
+# meanwhile. With more of it a part that friction holds creeps: a lip by a quarter of its section, with 0.1.
 FIRM, SLIGHTLY = 1e4, 0.02
 QUARTER = 90.0  # degrees: from there on a ring resists turning with a moment that falls
 FAILURES, MOST = 4, 400  # failures in a row, and iterations, until it ends

@@ -173,10 +173,8 @@ class Stepper:
             self._settle_cycle(state, at_once=floats)
             return
         except ConvergenceError as error:
-            if not floats:
-                raise
-            log.info("%s: held back", error)
-        ways = [self._held_back, self._anew]
+            log.info("%s: on another way", error)
+        ways = [self._held_back, self._anew] if floats else [self._anew]
         if state.stage.has_stick_slip:
             ways.append(self._settle_cycle)
         for way in ways:
