@@ -24,6 +24,7 @@ if TYPE_CHECKING:  # imported only if friction sticks
 
 Array = NDArray[np.float64]
 LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled: half of what rubber shall bear
+RINGS = (1, 2, 3, 4, 6, 8, 12)  # of elements around such ones that are refilled with them: more each time
 
 
 def transfer(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
@@ -89,7 +90,7 @@ def unfold(problem: Problem) -> None:
     mesh, u, points = problem.body.mesh, problem.fields[DISPLACEMENT], problem.points
     points.follow()
     corners: NDArray[np.intp] | None = None
-    for rings in (1, 2, 3, 4):
+    for rings in RINGS:
         xx, xy, yx, yy, hoop = np.moveaxis(points.strain(problem.state.vec.FV().NumPy())[..., :5], -1, 0)
         jacobian = ((1 + xx) * (1 + yy) - xy * yx) * (1 + hoop)
         marked = jacobian.min(axis=1) < LOWEST_JACOBIAN

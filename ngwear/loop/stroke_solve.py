@@ -71,6 +71,7 @@ def solve_stroke(
     stays = False
     if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
         stays = not empties(state, index) and _stays(state, index, work)
+        path = []  # it is not the way to this end
         if not stays:
             if at_once:
                 raise ConvergenceError(f"the {stroke.name} stroke needs load steps", last)
