@@ -169,30 +169,35 @@ def let_go(problem: Problem) -> list[Report]:
     for term in problem.terms:
         term.prepare()
         term.attempt(0)
-    before = problem.state.vec.CreateVector()
-    reports: list[Report] = []
-
-    def bring(solved: Callable[[], Report]) -> bool:
-        before.data = problem.state.vec
-        reports.append(solved())
-        if not reports[-1].converged:
-            problem.state.vec.data = before
-        return reports[-1].converged
-
-    def sharp() -> Report:
-        return iterate(problem, NewtonOptions())
-
     with problem.threads():
-        if bring(sharp):
-            return reports
-        try:
-            _round_off(problem, SLIGHTLY)
-            held = bring(lambda: _move_over(problem, NewtonOptions(damped=True), first=FIRM))
-        finally:
-            _round_off(problem, 0.0)
-        if held:
-            bring(sharp)
+        reports = [_or_back(problem, _sharply)]
+        if not reports[-1].converged:
+            reports.append(_or_back(problem, _held_firmly))
+            if reports[-1].converged:
+                reports.append(_or_back(problem, _sharply))
     return reports
+
+
+def _or_back(problem: Problem, way: Callable[[Problem], Report]) -> Report:
+    """Solve in this way; after a failure the state is put back."""
+    before = problem.state.vec.CreateVector()
+    before.data = problem.state.vec
+    report = way(problem)
+    if not report.converged:
+        problem.state.vec.data = before
+    return report
+
+
+def _sharply(problem: Problem) -> Report:
+    return iterate(problem, NewtonOptions())
+
+
+def _held_firmly(problem: Problem) -> Report:
+    try:
+        _round_off(problem, SLIGHTLY)
+        return _move_over(problem, NewtonOptions(damped=True), first=FIRM)
+    finally:
+        _round_off(problem, 0.0)
 
 
 def _hold_back(problem: Problem, strength: float) -> None:
