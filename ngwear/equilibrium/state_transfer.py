@@ -23,8 +23,8 @@ if TYPE_CHECKING:  # imported only if friction sticks
     from ngwear.effects.stick_slip import StickSlip
 
 Array = NDArray[np.float64]
+LARGEST_REFILL = 0.5  # of the elements: a state of which more is refilled is of no use
 LOWEST_JACOBIAN = 0.25  # below, an element of the carried displacement is refilled: half of what rubber shall bear
-RINGS = (1, 2, 3, 4, 6, 8, 12)  # of elements around such ones that are refilled with them: more each time
 
 
 def transfer(old: Problem, states: Sequence[Array], new: Problem) -> list[Array]:
@@ -86,22 +86,31 @@ def _take_inside(search: PointSearch, old: Problem, new: Problem, target: Array)
 
 
 def unfold(problem: Problem) -> None:
-    """Replace the displacement around crushed or inverted elements of a start state by a harmonic extension."""
+    """Replace the displacement around crushed or inverted elements of a start state by a harmonic extension.
+
+    The start state remains if no such replacement of a small part of it squeezes its elements less.
+    """
     mesh, u, points = problem.body.mesh, problem.fields[DISPLACEMENT], problem.points
     points.follow()
-    corners: NDArray[np.intp] | None = None
-    for rings in RINGS:
-        xx, xy, yx, yy, hoop = np.moveaxis(points.strain(problem.state.vec.FV().NumPy())[..., :5], -1, 0)
-        jacobian = ((1 + xx) * (1 + yy) - xy * yx) * (1 + hoop)
-        marked = jacobian.min(axis=1) < LOWEST_JACOBIAN
-        if not marked.any():
-            return
-        corners = _corners(mesh) if corners is None else corners
-        for _ in range(rings):
-            touched = np.zeros(mesh.nv, dtype=bool)
-            touched[corners[marked]] = True
-            marked = touched[corners].any(axis=1)
+    least = problem.jacobians()
+    if not (least < LOWEST_JACOBIAN).any():
+        return
+    best, kept, corners = float(least.min()), u.vec.FV().NumPy().copy(), _corners(mesh)
+    for rings in (1, 2, 3, 4):
+        touched = np.zeros(mesh.nv, dtype=bool)
+        touched[corners[least < LOWEST_JACOBIAN]] = True
+        for _ in range(rings - 1):
+            touched[corners[touched[corners].any(axis=1)]] = True
+        marked: NDArray[np.bool_] = np.any(touched[corners], axis=1)
+        if marked.mean() > LARGEST_REFILL:
+            break
         _fill_harmonically(u, marked)
+        least = problem.jacobians()
+        if least.min() > best:
+            best, kept = float(least.min()), u.vec.FV().NumPy().copy()
+        if not (least < LOWEST_JACOBIAN).any():
+            break
+    u.vec.FV().NumPy()[:] = kept
 
 
 def _corners(mesh: ng.Mesh) -> NDArray[np.intp]:
