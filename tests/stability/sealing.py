@@ -130,7 +130,7 @@ def cases() -> list[Case]:
             "extrusion gap",
             f"{gap:g} mm, p/G 20",
             partial(extruded, gap, 20),
-            "folds the surface" if gap > 0.05 else "",
+            "folds the surface|the part touches itself" if gap > 0.05 else "",
         )
         for gap in GAPS
     ]
