@@ -120,8 +120,8 @@ def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST
     """Follow the part through states out of equilibrium to the next equilibrium.
 
     Each step holds it back by springs from its state before, weaker ones while that is easy, none in the end; the first
-    ones have the strength ``first``
-    (pseudo-transient continuation: Kelley & Keyes, *SIAM J. Numer. Anal.* 35 (1998) 508).
+    ones have the strength ``first`` (pseudo-transient continuation: Kelley & Keyes, *SIAM J. Numer. Anal.* 35 (1998)
+    508).
     """
     place = problem.part(DISPLACEMENT)
     before = problem.state.vec.CreateVector()

@@ -163,8 +163,8 @@ class State:
     are empty unless damage accumulates over cycles. ``fine``, shape (k, 3), are places and the element edges that
     solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
     ``mesh_errors`` are relative errors by the mesh, by name, and ``first_wear`` [N] is the largest wear per cycle when
-    they were computed (``ngwear.loop.halved_elements``). ``placed``: where it is mounted, from
-    where it is drawn [mm] (``ngwear.loop.placing``).
+    they were computed (``ngwear.loop.halved_elements``). ``placed``: where it is mounted, from where it is
+    drawn [mm] (``ngwear.loop.placing``).
     """
 
     stage: Stage

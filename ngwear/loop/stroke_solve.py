@@ -46,8 +46,8 @@ def solve_stroke(
     """Solve the equilibrium of one stroke with implicit wear over ``sliding``; return the Newton iterations.
 
     It is tried at once, from the end of the stroke before and from its own end in the last cycle, else in load steps.
-    ``plan`` is the plan of the step, for the memory. With ``at_once`` no load steps are tried. With ``lowers`` a stroke
-    whose friction the part does not bear is solved with less of it.
+    ``plan`` is the plan of the step, for the memory. With ``at_once`` no load steps are tried, except where pockets may
+    keep what a fluid leaves. With ``lowers`` a stroke whose friction the part does not bear is solved with less of it.
 
     Raises
     ------
@@ -62,18 +62,18 @@ def solve_stroke(
     work, path, fewest = Work(), phase.path, phase.fewest
     stage.let_fluid_pass(phase.passed, after=stage.scene.program.cycle[index - 1])
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
-    waits = phase.rests > 0 and (bool(phase.path) or phase.stays)
-    if waits or (phase.path and phase.shares is None) or empties(state, index):
-        guesses = []  # on a new mesh a way that needed steps needs them again
+    waits, in_steps = phase.rests > 0 and (bool(phase.path) or phase.stays), empties(state, index)
+    if waits or (phase.path and phase.shares is None) or in_steps:
+        guesses = []  # nor on a new mesh, if it took steps on the last one
     reports = (_solves(state, guess, work) for guess in guesses)
     last = None
     solved = any((last := report).converged for report in reports)
     stays = False
     if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
-        stays = not empties(state, index) and _stays(state, index, work)
+        stays = not in_steps and _stays(state, index, work)
         path = []  # it is not the way to this end
         if not stays:
-            if at_once:
+            if at_once and not in_steps:
                 raise ConvergenceError(f"the {stroke.name} stroke needs load steps", last)
             hard = repeats > 1 or (bool(stage.floats) and not lowers)
             path, fewest = _by_steps(state, index, stroke, work, hard=hard)
