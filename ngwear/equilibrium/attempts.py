@@ -29,6 +29,9 @@ STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a stre
 # Of G / L, and of G: springs that hold the outline while the section beneath finds its stresses, and the rounding
 # meanwhile. With more of it a part that friction holds creeps: a lip by a quarter of its section, with 0.1.
 FIRM, SLIGHTLY = 1e4, 0.02
+# Times the weakest springs that held so far: where stronger ones are needed, it ends. Ways that led to an equilibrium
+# needed up to 304 times as strong ones, from the first springs, and 7 times, from firm ones.
+RISES, RISES_IF_FIRM = 500.0, 64.0
 QUARTER = 90.0  # degrees: from there on a ring resists turning with a moment that falls
 FAILURES, MOST = 4, 400  # failures in a row, and iterations, until it ends
 
@@ -116,19 +119,20 @@ def _by_rounded_laws(problem: Problem, options: NewtonOptions) -> Report:
         _round_off(problem, 0.0)
 
 
-def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST) -> Report:
+def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST, rises: float = RISES) -> Report:
     """Follow the part through states out of equilibrium to the next equilibrium.
 
     Each step holds it back by springs from its state before, weaker ones while that is easy, none in the end; the first
     ones have the strength ``first`` (pseudo-transient continuation: Kelley & Keyes, *SIAM J. Numer. Anal.* 35 (1998)
-    508).
+    508). It ends where springs are needed that are ``rises`` times as strong as the weakest ones that have held it.
     """
     place = problem.part(DISPLACEMENT)
     before = problem.state.vec.CreateVector()
     strength, bound, total, failures, eased = first, 0.0, 0, 0, 0
+    weakest = math.inf
     report = Report(Outcome.STALLED)
     try:
-        while failures <= FAILURES and total <= MOST and strength <= STIFFEST * first:
+        while failures <= FAILURES and total <= MOST and strength <= min(STIFFEST * first, rises * weakest):
             before.data = problem.state.vec
             _hold_back(problem, strength)
             report = iterate(problem, options)
@@ -144,7 +148,7 @@ def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST
             if abs(problem.turned()) > QUARTER:
                 report.outcome = Outcome.ROLLED
                 break
-            failures, eased = 0, eased + 1
+            failures, eased, weakest = 0, eased + 1, min(weakest, strength)
             moved = _largest(problem.state.vec, before, place) / problem.body.size
             bound = bound / GROWS**eased if moved > STANDS else 0.0
             if strength < LOOSE or (strength < NEARLY_LOOSE and moved < STANDS):
@@ -195,7 +199,7 @@ def _sharply(problem: Problem) -> Report:
 def _held_firmly(problem: Problem) -> Report:
     try:
         _round_off(problem, SLIGHTLY)
-        return _move_over(problem, NewtonOptions(damped=True), first=FIRM)
+        return _move_over(problem, NewtonOptions(damped=True), first=FIRM, rises=RISES_IF_FIRM)
     finally:
         _round_off(problem, 0.0)
 

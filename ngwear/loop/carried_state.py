@@ -4,9 +4,22 @@ from __future__ import annotations
 
 from ngwear.equilibrium.attempts import let_go
 from ngwear.equilibrium.stepping import StepOptions
-from ngwear.loop.state import State
+from ngwear.loop.stage import Stage
+from ngwear.loop.state import Phase, State
+from ngwear.scene.program import Stroke
 
 HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
+
+
+def set_to_end(stage: Stage, phase: Phase, stroke: Stroke) -> None:
+    """Set loads, fluids and first guess of the end of a stroke; slip counts from there, so that what sticks stays."""
+    stage.problem.set_loads(stage.stroke_loads(stroke))
+    stage.begin(phase.vector)
+    stage.leave_fluid(phase.left)
+    stage.let_fluid_pass(phase.passed)
+    stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+    for term in stage.problem.terms:
+        term.refresh()
 
 
 def settle_carried(state: State) -> None:
@@ -16,14 +29,8 @@ def settle_carried(state: State) -> None:
     """
     stage, cycle = state.stage, state.stage.scene.program.cycle
     vector = stage.problem.state.vec.FV().NumPy()
-    for i, (phase, stroke) in enumerate(zip(state.phases, cycle, strict=True)):
-        stage.problem.set_loads(stage.stroke_loads(stroke))
-        stage.begin(phase.vector)
-        stage.leave_fluid(state.phases[i - 1].left)
-        stage.let_fluid_pass(phase.passed)
-        vector[:] = phase.vector
-        for term in stage.problem.terms:
-            term.refresh()
+    for phase, stroke in zip(state.phases, cycle, strict=True):
+        set_to_end(stage, phase, stroke)
         for _ in range(StepOptions.max_updates):
             reports = let_go(stage.problem)
             for report in reports:

@@ -103,5 +103,5 @@ def _on_halved(state: State) -> State:
     there.work, there.ledger = copy(state.work), state.ledger.copy()
     there.phases = [replace(phase) for phase in state.phases]
     refine_everywhere(there)
-    Stepper(state.stage.scene).settle_on_new_mesh(there)
+    Stepper(state.stage.scene).settle_on_new_mesh(there, anew=False)
     return there

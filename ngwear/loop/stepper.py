@@ -158,10 +158,10 @@ class Stepper:
         state.counters = {name: c.counter for name, c in state.stage.contacts.items() if c.counter is not None}
         return found
 
-    def settle_on_new_mesh(self, state: State) -> None:
+    def settle_on_new_mesh(self, state: State, *, anew: bool = True) -> None:
         """Settle the cycle from the states carried over.
 
-        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted anew.
+        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted ``anew``, if asked.
 
         Raises
         ------
@@ -174,8 +174,10 @@ class Stepper:
             return
         except ConvergenceError as error:
             log.info("%s: on another way", error)
-        ways = [self._held_back, self._anew] if floats else [self._anew]
-        if state.stage.has_stick_slip:
+        ways = [self._held_back] if floats else []
+        if anew:
+            ways.append(self._anew)
+        if state.stage.has_stick_slip or not ways:
             ways.append(self._settle_cycle)
         for way in ways:
             state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})

@@ -15,7 +15,7 @@ from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError
 from ngwear.loop.bearable_friction import takes_less
-from ngwear.loop.carried_state import HARDEST
+from ngwear.loop.carried_state import HARDEST, set_to_end
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
 from ngwear.scene.program import Stroke
@@ -70,7 +70,7 @@ def solve_stroke(
     solved = any((last := report).converged for report in reports)
     stays = False
     if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
-        stays = not in_steps and _stays(state, index, work)
+        stays = not in_steps and _stays(state, index, stroke, work)
         path = []  # it is not the way to this end
         if not stays:
             if at_once and not in_steps:
@@ -101,7 +101,7 @@ def solve_stroke(
     return work.iterations
 
 
-def _stays(state: State, index: int, work: Work) -> bool:
+def _stays(state: State, index: int, stroke: Stroke, work: Work) -> bool:
     """Solve a stroke from its own end in the last cycle: a point that sticks there stays where it was then.
 
     For a part with room to move. Where points slide to and fro within a stroke, its end in the cycle before says which
@@ -110,13 +110,11 @@ def _stays(state: State, index: int, work: Work) -> bool:
     stage, phase = state.stage, state.phases[index]
     if not (stage.floats and stage.has_stick_slip):
         return False
-    loads = stage.problem.get_loads()
-    stage.begin(phase.vector)
-    stage.let_fluid_pass(phase.passed)
+    set_to_end(stage, phase, stroke)
     report = _solves(state, phase.vector, work)
     solved = report.converged and not (phase.rate is None and _passes_far(stage, phase.passed))
     stage.begin(state.phases[index - 1].vector)  # slip and heat are those of the stroke
-    stage.problem.set_loads(loads)
+    stage.problem.set_loads(stage.stroke_loads(stroke))
     return solved
 
 
@@ -194,10 +192,7 @@ def settle_last_stroke(state: State, *, at_once: bool = False) -> None:
         If there is no equilibrium nearby, or ``at_once``.
     """
     stage, last, work = state.stage, state.phases[-1], Work()
-    stage.problem.set_loads(stage.stroke_loads(stage.scene.program.cycle[-1]))
-    stage.begin(last.vector)
-    stage.let_fluid_pass(last.passed)
-    stage.leave_fluid(last.left)
+    set_to_end(stage, last, stage.scene.program.cycle[-1])
     report = _solves(state, last.vector, work)
     if at_once and not report.converged:
         raise ConvergenceError("the last stroke of the cycle needs load steps", report)
