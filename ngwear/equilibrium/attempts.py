@@ -154,7 +154,7 @@ def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST
             if strength < LOOSE or (strength < NEARLY_LOOSE and moved < STANDS):
                 strength = 0.0
             else:
-                strength = max(strength / min(WEAKER, max(1.0, FAR / moved)), bound)
+                strength = max(strength / max(1.0, FAR / max(moved, FAR / WEAKER)), bound)
     finally:
         _hold_back(problem, 0.0)
     report.iterations = total

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ngwear.equilibrium.attempts import let_go
 from ngwear.equilibrium.stepping import StepOptions
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State
 from ngwear.scene.program import Stroke
+
+Array = NDArray[np.float64]
 
 HARDEST = 1 / 16  # of the way to an equilibrium: below, another way is taken (a shorter jump, or mounting anew)
 
@@ -16,8 +21,13 @@ def set_to_end(stage: Stage, phase: Phase, stroke: Stroke) -> None:
     stage.problem.set_loads(stage.stroke_loads(stroke))
     stage.begin(phase.vector)
     stage.leave_fluid(phase.left)
-    stage.let_fluid_pass(phase.passed)
-    stage.problem.state.vec.FV().NumPy()[:] = phase.vector
+    set_guess(stage, phase.vector, phase.passed)
+
+
+def set_guess(stage: Stage, vector: Array, passed: Array | None) -> None:
+    """Set the first guess of a solve, and how far the fluids have passed contacts in it."""
+    stage.let_fluid_pass(passed)
+    stage.problem.state.vec.FV().NumPy()[:] = vector
     for term in stage.problem.terms:
         term.refresh()
 

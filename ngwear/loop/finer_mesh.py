@@ -17,10 +17,9 @@ from ngwear.equilibrium.newton import Report
 from ngwear.equilibrium.problem import Loads
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
 from ngwear.errors import ConvergenceError, MeshError
-from ngwear.loop.carried_state import HARDEST
+from ngwear.loop.carried_state import HARDEST, set_guess
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.solution_checks import Finding
-from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State
 from ngwear.scene.accuracy import PRESETS
 from ngwear.scene.scene import Scene
@@ -172,22 +171,14 @@ def _carry_on(state: State, begin: Array, work: Work) -> Array:
     stage.begin(begun.vector)
     stage.problem.set_loads(loads)
     stage.leave_fluid(left)
-    _set(stage, now.vector, passed)
+    set_guess(stage, now.vector, passed)
     try:
         work.add(relax(stage.problem, StepOptions(first=1.0, smallest=HARDEST)))
     except ConvergenceError as error:
         log.info("%s: held back", error)
-        _set(stage, now.vector, passed)
+        set_guess(stage, now.vector, passed)
         for report in let_go(stage.problem):
             work.count(report)
         if not report.converged:
             raise
     return begun.vector
-
-
-def _set(stage: Stage, vector: Array, passed: Array | None) -> None:
-    """Set a guess, and how far the fluids have passed contacts in it."""
-    stage.let_fluid_pass(passed)
-    stage.problem.state.vec.FV().NumPy()[:] = vector
-    for term in stage.problem.terms:
-        term.refresh()

@@ -102,3 +102,25 @@ def test_a_part_moves_over_to_the_wall_and_no_spring_is_left():
     problem.residual(residual)
     assert np.abs(residual.FV().NumPy()).max() < 1e-6 * PRESSURE
     assert stage.contacts["wall"].force()[0] > 0.5 * PRESSURE
+
+
+def test_a_way_ends_where_much_stronger_springs_are_needed(monkeypatch):
+    """Springs of 1/16 hold the part; from then on none does, however stiff: it is not tried up to the stiffest."""
+    problem = solved().problem
+    tried: list[float] = []
+    hold_back = attempts._hold_back
+    monkeypatch.setattr(
+        attempts, "_hold_back", lambda where, strength: (tried.append(strength), hold_back(where, strength))
+    )
+
+    def holds_to_a_sixteenth(problem, options):
+        bears = min(tried) >= 1 / 16 and tried[-1] == min(tried)
+        return Report(Outcome.CONVERGED if bears else Outcome.STALLED, iterations=1)
+
+    monkeypatch.setattr(attempts, "iterate", holds_to_a_sixteenth)
+    monkeypatch.setattr(attempts, "FAILURES", 100)
+    report = attempts._move_over(problem, NewtonOptions(damped=True), rises=64.0)
+    assert not report.converged
+    assert min(tried[:-1]) == pytest.approx(1 / 64)
+    assert 1.0 < max(tried[3:]) <= 64 / 16
+    assert tried[-1] == 0.0
