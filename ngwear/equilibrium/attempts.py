@@ -29,9 +29,9 @@ STANDS, NEARLY_LOOSE = 1e-3, 1e-2  # a motion over the section's size and a stre
 # Of G / L, and of G: springs that hold the outline while the section beneath finds its stresses, and the rounding
 # meanwhile. With more of it a part that friction holds creeps: a lip by a quarter of its section, with 0.1.
 FIRM, SLIGHTLY = 1e4, 0.02
-# Times the weakest springs that held so far: where stronger ones are needed, it ends. Ways that led to an equilibrium
-# needed up to 304 times as strong ones, from the first springs, and 7 times, from firm ones.
-RISES, RISES_IF_FIRM = 500.0, 64.0
+# Times the weakest springs that held so far: where much stronger ones are needed than those, a way from firm ones leads
+# nowhere. Ways to an equilibrium needed up to 7 times as strong ones; those from the first springs more than 700.
+RISES = 64.0
 QUARTER = 90.0  # degrees: from there on a ring resists turning with a moment that falls
 FAILURES, MOST = 4, 400  # failures in a row, and iterations, until it ends
 
@@ -119,7 +119,7 @@ def _by_rounded_laws(problem: Problem, options: NewtonOptions) -> Report:
         _round_off(problem, 0.0)
 
 
-def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST, rises: float = RISES) -> Report:
+def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST, rises: float = math.inf) -> Report:
     """Follow the part through states out of equilibrium to the next equilibrium.
 
     Each step holds it back by springs from its state before, weaker ones while that is easy, none in the end; the first
@@ -199,7 +199,7 @@ def _sharply(problem: Problem) -> Report:
 def _held_firmly(problem: Problem) -> Report:
     try:
         _round_off(problem, SLIGHTLY)
-        return _move_over(problem, NewtonOptions(damped=True), first=FIRM, rises=RISES_IF_FIRM)
+        return _move_over(problem, NewtonOptions(damped=True), first=FIRM, rises=RISES)
     finally:
         _round_off(problem, 0.0)
 

@@ -109,6 +109,8 @@ class Stepper:
         if scene.deactivation is None:
             repeat_cycle(state, self._pass, forces)  # most of the way on few elements
             found = self._refine(state)
+            if not state.reports:  # back on the elements on which it was mounted
+                self._settle_cycle(state)
             change = repeat_cycle(state, self._pass, [report.forces for report in state.reports])
             state.reports = with_findings(state.reports, found + creeping(change) + placed(state))
         else:

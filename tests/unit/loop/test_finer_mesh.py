@@ -182,6 +182,19 @@ def test_without_an_equilibrium_on_the_last_mesh_the_one_before_counts_and_this_
     assert Stepper(ring).advance(state).strokes > 0
 
 
+def test_a_part_refined_only_while_it_was_mounted_has_its_reports(ring, monkeypatch):
+    """Of two strokes, so that no cycle is repeated before the first new mesh, on which there is no equilibrium."""
+    failed = []
+    monkeypatch.setattr(
+        finer_mesh, "advance", fails_once(lambda target: target.get("rod approach [mm]") == 0.0, failed)
+    )
+    fails_on_mesh(monkeypatch, 2, ConvergenceError("the corrections do not shrink"))
+    state = Stepper(replace(ring, program=replace(ring.program, strokes=2))).start()
+    assert state.halved == state.ledger.remeshes == 1
+    assert len(state.reports) == len(ring.program.cycle)
+    assert [found.key for found in state.reports[-1].findings].count("coarser") == 1
+
+
 @pytest.mark.parametrize(
     ("number", "error"),
     [
