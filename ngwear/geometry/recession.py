@@ -17,6 +17,7 @@ OPENING = 2e-3  # mm; slivers and necks thinner than twice this are removed when
 # 73 degrees: beyond, a point runs more than three times as far as the depth; settled on the torn seal.
 STEEPEST = 0.3  # cosine between a column and the outline's normal, up to which points follow the column
 SHAPE = 0.05  # of the greatest worn depth: how far the outline may move where two of its points are merged
+SHARPEST = np.radians(30)  # inner angle of a tongue: the mesher needs 12 degrees, and a step of wear halves it
 MAX_SUBSTEP = 0.2  # of the shorter neighbouring segment: normals then turn little in a part; costs next to nothing
 
 
@@ -141,6 +142,20 @@ def healed(before: Outline, after: Array) -> Outline:
         raise GeometryError(f"the section is worn through near {place}")
     ring = pieces[-1].exterior
     return _renamed(before, after, _with_points(np.array(ring.coords)[:-1], after))
+
+
+def without_tongues(contour: Outline, worn_edges: tuple[str, ...]) -> Outline:
+    """The outline without the tips of tongues: points between two worn segments with an inner angle below ``SHARPEST``.
+
+    Wear leaves them where a surface folds. The same outline if it has none.
+    """
+    while True:
+        worn = contour.on(worn_edges)
+        sharp = (contour.turning > np.pi - SHARPEST) & worn & np.roll(worn, 1)
+        drop = sharp & ~np.roll(sharp, 1)
+        if not drop.any():
+            return contour
+        contour = contour.without(drop)
 
 
 def refuse_worn_through(contour: Outline) -> None:

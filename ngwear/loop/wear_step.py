@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ngwear.effects.contact_profile import ContactProfile
 from ngwear.errors import GeometryError, MeshError
 from ngwear.geometry.outline import Outline, polygon_area, polygon_moment
-from ngwear.geometry.recession import recede, receded, refuse_worn_through
+from ngwear.geometry.recession import recede, receded, refuse_worn_through, without_tongues
 from ngwear.loop.carried_error import with_more_worn
 from ngwear.loop.remeshing import remesh
 from ngwear.loop.state import LastWear, State
@@ -289,7 +289,10 @@ class WearStep:
 
 
 def _follow(state: State, outline: Outline, worn: Outline) -> None:
-    """Move the mesh to the worn outline; remesh if that fails, unless the scene forbids it."""
+    """Move the mesh to the worn outline; remesh if that fails, unless the scene forbids it.
+
+    Tongues that the mesher cannot fill are taken off: they tear off before they wear off. The ledger shows it.
+    """
     body, why = state.stage.body, "the outline needs other points"
     if len(worn) == len(outline):
         try:
@@ -305,4 +308,13 @@ def _follow(state: State, outline: Outline, worn: Outline) -> None:
         )
     refuse_worn_through(worn)
     log.info("%s: a new mesh is needed", why)
-    remesh(state, worn)
+    try:
+        remesh(state, worn)
+    except MeshError as error:
+        blunt = without_tongues(worn, state.stage.scene.worn_edges)
+        if blunt is worn:
+            raise
+        log.info("%s: tongues of the outline are taken off", error)
+        state.ledger.removed += worn.area - blunt.area
+        state.ledger.moment += polygon_moment(worn.points) - polygon_moment(blunt.points)
+        remesh(state, blunt)

@@ -7,7 +7,7 @@ from shapely import points as shapely_points
 
 from ngwear.errors import GeometryError
 from ngwear.geometry.outline import Outline
-from ngwear.geometry.recession import SHAPE, recede, refuse_worn_through, tidied
+from ngwear.geometry.recession import SHAPE, recede, refuse_worn_through, tidied, without_tongues
 from ngwear.geometry.sizing import SizeField
 
 
@@ -158,3 +158,14 @@ def test_a_thin_sheet_that_loses_a_fifth_is_not_worn_through(rectangle):
     area = np.where([p[1] > 0.09 for p in sheet.points], 0.02 * 0.5, 0.0)
     worn = recede(sheet, area, ("top",))
     assert worn.area == pytest.approx(0.08, rel=1e-3)
+
+
+@pytest.mark.parametrize(("width", "stays"), [(0.01, False), (0.05, False), (0.2, True)])
+def test_tips_of_tongues_are_taken_off(width, stays):
+    """A tongue of length 0.1: its inner angle is 6, 28 or 90 degrees."""
+    points = np.array([[0, 0], [0.5 - width / 2, 0], [0.5, -0.1], [0.5 + width / 2, 0], [1, 0], [1, 1], [0, 1]])
+    outline = Outline(points, ("worn",) * 4 + ("rest",) * 3, np.array([1, 0, 0, 0, 1, 1, 1], dtype=bool))
+    blunt = without_tongues(outline, ("worn",))
+    assert (blunt is outline) == stays
+    assert blunt.area == pytest.approx(1 + stays * 0.05 * width, rel=1e-12)
+    assert without_tongues(outline, ("rest",)) is outline, "what does not wear stays as it is drawn"

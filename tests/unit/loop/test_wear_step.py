@@ -11,7 +11,7 @@ from ngwear.loop.finer_mesh import refine_everywhere
 from ngwear.loop.remeshing import _Interpolation
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.stroke_solve import solve_stroke
-from ngwear.loop.wear_step import WearStep
+from ngwear.loop.wear_step import WearStep, _follow
 from ngwear.scene.accuracy import Accuracy
 from ngwear.wear.backward_differences import error_over_difference, share_of_last
 
@@ -128,3 +128,24 @@ def test_where_nodes_cannot_follow_the_strokes_to_come_leave_air(coarse_seal, mo
 
 def _refuse(contour):
     raise MeshError("an element would turn inside out")
+
+
+def test_a_tongue_that_the_mesher_cannot_fill_is_taken_off_and_booked(fine_sheet):
+    stepper = Stepper(fine_sheet)
+    state = stepper.advance(stepper.start())
+    outline, worn = state.contour, fine_sheet.contacts[0].edges[0]
+    where = np.flatnonzero(outline.on((worn,)))
+    i = int(where[len(where) // 2])
+    a, b = outline.points[i], outline.points[i + 1]
+    along, length = (b - a) / outline.lengths[i], outline.lengths[i]
+    out = np.array([along[1], -along[0]]) * length
+    tongue = np.array([a + 0.45 * (b - a), a + 0.5 * (b - a) + out, a + 0.55 * (b - a)])
+    new = Outline(
+        np.insert(outline.points, i + 1, tongue, axis=0),
+        outline.names[: i + 1] + (worn,) * 3 + outline.names[i + 1 :],
+        np.insert(outline.corners, i + 1, [False] * 3),
+    )
+    removed = state.ledger.removed
+    _follow(state, outline, new)
+    assert state.ledger.removed - removed == pytest.approx(0.05 * length**2, rel=1e-6)
+    assert state.contour.area == pytest.approx(outline.area, rel=1e-9)
