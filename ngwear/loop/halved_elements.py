@@ -19,6 +19,8 @@ from copy import copy
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from ngwear.errors import ConvergenceError, GeometryError, MeshError
 from ngwear.loop.cycle_quantities import Quantities, read_cycle, wear_per_stroke
@@ -29,7 +31,10 @@ from ngwear.loop.time_step_error import next_cycle
 from ngwear.results.quantities_of_interest import BY_HALVED, DEPTH, PEAK
 from ngwear.results.richardson import relative_errors
 
-BY_PEAK = f"{PEAK[:-4]} {BY_HALVED}"
+BY_DEPTH, BY_PEAK = (f"{name[:-4]} {BY_HALVED}" for name in (DEPTH, PEAK))
+Array = NDArray[np.float64]
+
+NEAR = 3  # a place, and those on both sides of it
 REMAINS = 1.25 * 2.0  # factor of safety, times the error of first order over what halves change, 1 / (1 - 1/2)
 
 
@@ -38,8 +43,8 @@ def add_mesh_errors(state: State) -> list[str]:
 
     They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; the error
     of the depth is that of the largest wear per cycle, and of the wear at its place: largest values may agree by chance
-    though those of each place do not. Not for a part that is held, or rubber with memory. Returns a
-    warning if there is no equilibrium on the finer elements.
+    though those of each place do not. ``State.wear_changes`` has the changes at all places. Not for a part that is
+    held, or rubber with memory. Returns a warning if there is no equilibrium on the finer elements.
     """
     if state.mesh_errors or state.memory is not None or not remeshes(state):
         return []
@@ -55,7 +60,9 @@ def add_mesh_errors(state: State) -> list[str]:
         Stepper(state.stage.scene).restore_last_stroke(state)
     changes = relative_errors(mine, other)
     if DEPTH in changes:  # something wears
-        changes[DEPTH] = max(changes[DEPTH], _change_where_deepest(here, there))
+        state.wear_changes = _wear_changes(here, there)
+        first = state.wear_changes[state.wear_changes[:, 2].argmax(), :2]
+        changes[DEPTH] = max(changes[DEPTH], _change_at(state, first))
     state.mesh_errors = {f"{name[:-4]} {BY_HALVED}": REMAINS * change for name, change in changes.items()}
     state.first_wear = _largest_wear(mine)
     return []
@@ -64,10 +71,15 @@ def add_mesh_errors(state: State) -> list[str]:
 def faded(state: State) -> dict[str, float]:
     """``State.mesh_errors`` times what is left of the largest wear per cycle; that of the peak pressure whole.
 
-    To that of the peak pressure, what the present peaks may be read too low by is added.
+    To that of the peak pressure, what the present peaks may be read too low by is added. That of the depth is at least
+    that of the place that is the deepest now.
     """
     left = min(1.0, _largest_wear(read_cycle(state)) / state.first_wear) if state.first_wear > 0 else 1.0
-    errors = {name: error * (1.0 if name == BY_PEAK else left) for name, error in state.mesh_errors.items()}
+    errors = dict(state.mesh_errors)
+    if BY_DEPTH in errors and state.depths is not None:
+        deepest = state.contour.points[state.depths[0].argmax()]
+        errors[BY_DEPTH] = max(errors[BY_DEPTH], REMAINS * _change_at(state, deepest))
+    errors = {name: error * (1.0 if name == BY_PEAK else left) for name, error in errors.items()}
     if BY_PEAK in errors:
         profiles = [profile for report in state.reports for profile in report.contacts.values()]
         largest = max(float(profile.pressure.max()) for profile in profiles)
@@ -75,17 +87,27 @@ def faded(state: State) -> dict[str, float]:
     return errors
 
 
-def _change_where_deepest(here: State, there: State) -> float:
-    """Change of the wear per cycle where it is largest, over the largest of all wearing contacts [-]."""
-    change = largest = 0.0
-    for spec in (spec for spec in here.stage.scene.contacts if spec.wears):
-        wear, other = (wear_per_stroke(state, spec.name).sum(axis=0) for state in (here, there))
-        before, after = (state.reports[-1].contacts[spec.name].reference for state in (here, there))
-        if wear.max() > largest:
-            largest, deepest = float(wear.max()), int(wear.argmax())
-            nearest = np.linalg.norm(after - before[deepest], axis=1).argmin()
-            change = abs(float(wear[deepest] - other[nearest]))
-    return change / largest if largest > 0 else 0.0
+def _wear_changes(here: State, there: State) -> Array:
+    """Places of the wearing contacts [mm], wear per cycle, and its change on the other mesh [N], shape (k, 4)."""
+    rows = []
+    for name in (spec.name for spec in here.stage.scene.contacts if spec.wears):
+        wear, other = (wear_per_stroke(state, name).sum(axis=0) for state in (here, there))
+        before, after = (state.reports[-1].contacts[name].reference for state in (here, there))
+        apart, nearest = cKDTree(after).query(before, k=2)
+        between = apart[:, 0] / apart.sum(axis=1)
+        there_too = (1.0 - between) * other[nearest[:, 0]] + between * other[nearest[:, 1]]
+        rows.append(np.column_stack([before, wear, np.abs(wear - there_too)]))
+    return np.vstack(rows)
+
+
+def _change_at(state: State, place: Array) -> float:
+    """Change of the wear per cycle at a place, over the largest wear [-]; the largest of the ``NEAR`` places there.
+
+    At a single place the pressures of both meshes may cross each other.
+    """
+    _, near = cKDTree(state.wear_changes[:, :2]).query(place, k=min(NEAR, len(state.wear_changes)))
+    largest = state.wear_changes[:, 2].max()
+    return float(state.wear_changes[near, 3].max() / largest) if largest > 0 else 0.0
 
 
 def _largest_wear(read: Quantities) -> float:

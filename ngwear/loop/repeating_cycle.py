@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -37,12 +38,14 @@ def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport]
     Returns
     -------
     float
-        ``largest_change`` from the last cycle but one to the last [-]; 0 if only one is known.
+        ``largest_change`` from the last cycle but one to the last [-]; 0 for a part that does not stick, infinite if
+        the second cycle fails.
     """
     program = state.stage.scene.program
     creeps = bool(state.stage.floats) and state.stage.has_stick_slip
-    change = 0.0
-    for _ in range(min(MOST_CYCLES, program.strokes // len(program.cycle) - 1) if creeps else 0):
+    cycles = min(MOST_CYCLES, program.strokes // len(program.cycle) - 1) if creeps else 0
+    change = math.inf if cycles > 0 else 0.0
+    for _ in range(cycles):
         saved = state.saved()
         try:
             reports = [pass_stroke(state, i) for i in range(len(program.cycle))]
@@ -60,9 +63,15 @@ def repeat_cycle(state: State, pass_stroke: Callable[[State, int], StrokeReport]
 
 
 def creeping(change: float) -> list[Finding]:
-    """A finding if forces still change by more than ``REPEATS`` from cycle to cycle."""
+    """A finding if forces still change by more than ``REPEATS`` from cycle to cycle, or only one cycle is known."""
     if change <= REPEATS:
         return []
+    if change == math.inf:
+        sentence = (
+            "the part sticks, and no equilibrium was found in its second cycle: the wear is that of the first one "
+        )
+        sentence += "after mounting, and where the part creeps it may be another; hold the part, or lower the friction"
+        return [Finding("creep", 1.0, sentence)]
     sentence = f"the part still creeps where the wear begins: forces change by {100 * change:.0f} % of the largest "
     sentence += "from one cycle to the next, and the wear may change as much; hold the part, or lower the friction of "
     sentence += "what it rests on"

@@ -162,9 +162,10 @@ class State:
     ``fatigue`` is the accumulated damage of each element, and ``strained`` that of the present cycle so far [-]; both
     are empty unless damage accumulates over cycles. ``fine``, shape (k, 3), are places and the element edges that
     solves have asked for there [mm]; ``halved`` and ``refined`` say how often (``ngwear.loop.finer_mesh``).
-    ``mesh_errors`` are relative errors by the mesh, by name, and ``first_wear`` [N] is the largest wear per cycle when
-    they were computed (``ngwear.loop.halved_elements``). ``placed``: where it is mounted, from where it is
-    drawn [mm] (``ngwear.loop.placing``).
+    ``mesh_errors`` are relative errors by the mesh, by name; when they were computed, ``first_wear`` [N] was the
+    largest wear per cycle, and ``wear_changes``, shape (k, 4), are places [mm], their wear per cycle, and its change on
+    the other mesh [N] (``ngwear.loop.halved_elements``). ``placed``: where it is mounted, from where it is drawn [mm]
+    (``ngwear.loop.placing``).
     """
 
     stage: Stage
@@ -185,6 +186,7 @@ class State:
     refined: int = 0
     mesh_errors: dict[str, float] = field(default_factory=dict)
     first_wear: float = 0.0
+    wear_changes: Array = field(default_factory=lambda: np.empty((0, 4)))
     placed: tuple[float, float] = (0.0, 0.0)
 
     @property

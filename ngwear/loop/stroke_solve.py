@@ -14,7 +14,7 @@ from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError
-from ngwear.loop.bearable_friction import takes_less
+from ngwear.loop.bearable_friction import advance_while_sliding, is_too_much, takes_less
 from ngwear.loop.carried_state import HARDEST, set_to_end
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
@@ -30,6 +30,8 @@ EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is
 FAR = 0.1  # of the section: how far a fluid passes contacts in one solve on a new mesh, before steps are taken
 RESTS = 3  # a solve at once that has failed so often in a row is tried in every eighth solve
 AHEAD = 2  # load steps of the last way that may be left out behind one that fails
+# Settled on an X-ring: the list says by which command.
+MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
 
@@ -60,14 +62,16 @@ def solve_stroke(
     _begin(state, index, stroke, sliding, plan)
     before, fresh, repeats = phase.vector, phase.rate is None, sliding.repeats
     work, path, fewest = Work(), phase.path, phase.fewest
-    stage.let_fluid_pass(phase.passed, after=stage.scene.program.cycle[index - 1])
     guesses = [before] if phase.rate is None else [before + repeats * phase.rate, before]
     waits, in_steps = phase.rests > 0 and (bool(phase.path) or phase.stays), empties(state, index)
     if waits or (phase.path and phase.shares is None) or in_steps:
         guesses = []  # nor on a new mesh, if it took steps on the last one
-    reports = (_solves(state, guess, work) for guess in guesses)
-    last = None
-    solved = any((last := report).converged for report in reports)
+    last, solved = None, False
+    for guess in guesses:
+        _let_fluid_pass(state, index)
+        last = _solves(state, guess, work)
+        if solved := last.converged:
+            break
     stays = False
     if not solved or (stage.floats and fresh and _passes_far(stage, phase.passed)):
         stays = not in_steps and _stays(state, index, stroke, work)
@@ -132,6 +136,12 @@ def _passes_far(stage: Stage, before: Array | None) -> bool:
     return bool((farther > FAR * stage.body.size).any())
 
 
+def _let_fluid_pass(state: State, index: int) -> None:
+    """Set the places up to which the fluids had lifted contacts at the stroke's last end, before a solve from there."""
+    stage = state.stage
+    stage.let_fluid_pass(state.phases[index].passed, after=stage.scene.program.cycle[index - 1])
+
+
 def _begin(state: State, index: int, stroke: Stroke, sliding: Strokes, plan: Plan) -> None:
     """Begin a stroke at the end of the one before, with the laws and the memory of the strokes it stands for."""
     stage, before = state.stage, state.phases[index - 1]
@@ -156,7 +166,8 @@ def pass_stroke(state: State, index: int, stroke: Stroke, sliding: Strokes, *, s
     """Solve a stroke without wear in load steps from the end of the one before; return the Newton iterations.
 
     Unlike ``solve_stroke``, which begins at its last equilibrium, and where friction sticks finds that again. The phase
-    then has the way, and a next solve goes that way again, at its load steps.
+    then has the way, and a next solve goes that way again, at its load steps. A part that does not bear the friction
+    is solved with less of it, as in the cycle in which it was mounted (``advance_while_sliding``).
 
     Raises
     ------
@@ -166,13 +177,24 @@ def pass_stroke(state: State, index: int, stroke: Stroke, sliding: Strokes, *, s
     stage, problem, phase, work = state.stage, state.stage.problem, state.phases[index], Work()
     _begin(state, index, stroke, sliding, ())
     options = StepOptions(first=1 / steps, largest=1 / steps, smallest=HARDEST, leaps=False)
-    if phase.path:
-        phase.fewest = True
-        path, _ = _follow(state, index, stroke, work, options)
-    else:
+    path: list[tuple[float, Array]] = []
+    try:
+        if phase.path:
+            phase.fewest = True
+            path, _ = _follow(state, index, stroke, work, options)
+        else:
+            _begin_path(state, index)
+            work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
+    except ConvergenceError as error:
+        if not is_too_much(error):
+            raise
+        log.info("%s: as in the first cycle", error)
         path = []
         _begin_path(state, index)
-        work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
+        begin, way = problem.state.vec.FV().NumPy().copy(), steps_for(state, index, StepOptions(first=MOVING))
+        more, _ = advance_while_sliding(state, stroke.name, stage.stroke_loads(stroke), way, begin=begin)
+        work.add(more)
+        stage, problem, phase = state.stage, state.stage.problem, state.phases[index]  # maybe on other elements
     state.work.add(work)
     vector, passed, left = problem.state.vec.FV().NumPy().copy(), stage.fluid_passed(), stage.fluid_left()
     shares = stage.shares(stroke)
@@ -339,12 +361,16 @@ def _approach(state: State, index: int, stroke: Stroke, work: Work, options: Ste
     Returns these steps if friction sticks, for ``Phase.path``.
     """
     stage, problem = state.stage, state.stage.problem
-    _set_guess(state, state.phases[index].vector)
+    phase = state.phases[index]
+    _set_guess(state, phase.vector)
     follows, lowered = stage.has_stick_slip and stage.scene.deactivation is None, empties(state, index)
     if not follows and not lowered:
+        _let_fluid_pass(state, index)
         try:
             work.add(relax(problem, options))
-            return []
+            if not (stage.floats and phase.rate is None and _passes_far(stage, phase.passed)):
+                return []
+            log.info("the fluid passes a contact at once: trying from the previous stroke")
         except ConvergenceError as error:
             log.info("%s: trying from the previous stroke", error)
     _begin_path(state, index)

@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import ngwear as nw
-from ngwear.loop import fluid_let_in
+from ngwear.equilibrium.newton import Outcome, Report
+from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax
+from ngwear.loop import fluid_let_in, stroke_solve
 from ngwear.loop.fluid_let_in import fluid_errors
 from ngwear.loop.run import run
 from ngwear.results.quantities_of_interest import BY_FLUID, DEPTH, PEAK
@@ -80,6 +82,49 @@ def test_after_a_stroke_without_pressure_it_has_passed_nothing(cup):
     state.phases[1].passed = state.phases[2].passed
     state = stepper.advance(state)
     assert axial(state.reports[1]) == pytest.approx(before, rel=1e-3)
+    state.restore(kept)
+
+
+def test_a_solve_that_failed_leaves_no_contact_lifted(cup, monkeypatch):
+    """Load steps from the stroke's last end begin where the fluid was then."""
+    stepper, state = cup
+    kept, before, began = state.saved(), axial(state.reports[1]), []
+    everywhere = state.phases[2].passed
+
+    def fails(state, guess, work):
+        began.append(state.stage.fluid_passed())
+        state.stage.let_fluid_pass(everywhere)
+        return Report(Outcome.STALLED)
+
+    def relaxes(problem, options):
+        began.append(state.stage.fluid_passed())
+        return relax(problem, options)
+
+    monkeypatch.setattr(stroke_solve, "_solves", fails)
+    monkeypatch.setattr(stroke_solve, "relax", relaxes)
+    report = stepper._solve_without_wear(state, 1, stepper._next_cycle(state))
+    assert began == [None, None], "of no contact"
+    assert axial(report) == pytest.approx(before, rel=5e-3), "within a mesh edge of the front"
+    state.restore(kept)
+
+
+def test_load_steps_on_a_new_mesh_whose_fluid_passes_a_contact_at_once_are_not_trusted(cup, monkeypatch):
+    stepper, state = cup
+    kept, ways = state.saved(), []
+
+    def advances(*args, **kwargs):
+        ways.append("from the stroke before")
+        return advance(*args, **kwargs)
+
+    monkeypatch.setattr(stroke_solve, "_solves", lambda *args: Report(Outcome.STALLED))
+    monkeypatch.setattr(stroke_solve, "advance", advances)
+    for far in (False, True):
+        monkeypatch.setattr(stroke_solve, "_passes_far", lambda *args, far=far: far)
+        state.phases[1].rate = None  # as on a new mesh
+        stroke_solve._approach(state, 1, stepper.scene.program.cycle[1], Work(), StepOptions())
+        assert len(ways) == far
+        state.stage.floats = stepper.scene.contacts  # the next time as a part with room to move
+    state.stage.floats = ()
     state.restore(kept)
 
 

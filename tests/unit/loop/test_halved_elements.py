@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import ngwear as nw
@@ -9,7 +10,7 @@ from ngwear.error_estimates.stated_errors import LARGE, state_errors, with_parts
 from ngwear.errors import ConvergenceError
 from ngwear.loop import halved_elements
 from ngwear.loop.cycle_quantities import read_cycle
-from ngwear.loop.halved_elements import add_mesh_errors, faded
+from ngwear.loop.halved_elements import REMAINS, add_mesh_errors, faded
 from ngwear.loop.run import run
 from ngwear.loop.stepper import Stepper
 from ngwear.results.quantities_of_interest import AREA, BY_HALVED, DEPTH, PEAK
@@ -64,6 +65,21 @@ def test_errors_fade_as_the_wear_does(mounted):
     assert {name: error for name, error in whole.items() if name != BY_PEAK} == {
         name: error for name, error in mounted.mesh_errors.items() if name != BY_PEAK
     }
+
+
+def test_the_depth_has_the_error_of_the_place_that_is_the_deepest_at_the_end(mounted):
+    add_mesh_errors(mounted)
+    before = faded(mounted)[BY_DEPTH]
+    places, wear = mounted.wear_changes[:, :2], mounted.wear_changes[:, 2]
+    here = int(wear.argsort()[len(wear) // 2])  # where it wears less at first
+    mounted.wear_changes[here, 3] = 0.4 * wear.max()
+    depths = np.zeros((2, len(mounted.contour)))
+    depths[0, np.linalg.norm(mounted.contour.points - places[wear.argmax()], axis=1).argmin()] = 1.0
+    mounted.depths = depths
+    assert faded(mounted)[BY_DEPTH] == before
+    depths[0] = 0.0
+    depths[0, np.linalg.norm(mounted.contour.points - places[here], axis=1).argmin()] = 1.0
+    assert faded(mounted)[BY_DEPTH] == pytest.approx(REMAINS * 0.4)
 
 
 def test_what_the_nodes_do_not_show_of_the_peak_is_added(mounted):
