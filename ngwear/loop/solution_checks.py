@@ -1,4 +1,4 @@
-"""Look at an accepted solve: overlap, zigzag pressures, imbalance, crushed elements, folds, blow-by, rolling.
+"""Look at an accepted solve: overlap, zigzag pressures, uneven stretch, imbalance, crushed elements, folds, blow-by, rolling.
 
 Every stroke that is recorded is looked at. A finding is a sentence with the place and the value; the run keeps the
 worst of each kind and place, and lists them as warnings.
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
-from ngwear.effects.contact_profile import NO_PRESSURE, ContactProfile
+from ngwear.effects.contact_profile import HALF, NO_PRESSURE, ContactProfile
 from ngwear.equilibrium.diagnosis import CRUSHED, crosses
 from ngwear.fields.deformed_outline import crossing, outline_places
 from ngwear.loop.stage import Stage
@@ -27,7 +27,7 @@ MOST = 0.1  # of what drives an overlap most: eight times less on half the edge
 UNLISTED = ", whose edges do not name it: name it there, or give no edges, so that any may touch"
 COARSE = ": the mesh there is too coarse for the contact; take smaller elements"
 ZIGZAG = 0.1  # of the contact's peak: amplitude of a pressure that alternates from node to node about its course,
-UP_AND_DOWN = 0.05  # and of one that goes up and down twice on five nodes
+UP_AND_DOWN = 0.05  # and of one that goes up and down twice on five nodes; of a stretch that does so on three edges
 ALTERNATES = 3  # nodes in a row whose second differences change sign: two bumps on five nodes are not resolved
 UNBALANCED = 1e-5  # of the largest force: sum of all forces where no support takes a part of it
 BARELY_HELD = "barely held"  # beginning of a key
@@ -85,7 +85,10 @@ def findings(
         *_lower_friction(stage, stroke),
     ]
     for name, contact in stage.contacts.items():
-        found += _zigzag(name, profiles[name] if name in profiles else contact.profile())
+        profile = profiles[name] if name in profiles else contact.profile()
+        found += _zigzag(name, profile)
+        if contact.wears:
+            found += _uneven_stretch(name, profile)
     return tuple(found)
 
 
@@ -191,6 +194,30 @@ def _up_and_down(profile: ContactProfile) -> Iterator[tuple[float, int, NDArray[
     size = np.maximum(steps.min(axis=1), -steps.max(axis=1)) / 2
     for first in np.flatnonzero((size > UP_AND_DOWN * p.max()) & joins[nodes[:, :4]].all(axis=1)):
         yield float(size[first]), int(nodes[first, 2]), nodes[first]
+
+
+def _uneven_stretch(name: str, profile: ContactProfile) -> Iterator[Finding]:
+    """A surface that wears, and whose stretch goes up and down from mesh edge to mesh edge: so does the wear."""
+    edges = profile.edges[np.argsort(profile.t[profile.edges].min(axis=1))]
+    length, deformed = (
+        np.linalg.norm(x[edges[:, 1]] - x[edges[:, 0]], axis=1) for x in (profile.reference, profile.place)
+    )
+    stretch = deformed / length
+    joins = edges[:-1].max(axis=1) == edges[1:].min(axis=1)
+    rise = np.diff(stretch)
+    size = np.minimum(np.abs(rise[:-1]), np.abs(rise[1:])) / 2
+    loaded = profile.pressure[edges[1:-1]].max(axis=1) > HALF * profile.pressure.max(initial=0.0)
+    size = np.where((rise[:-1] * rise[1:] < 0) & joins[:-1] & joins[1:] & loaded, size, 0.0)
+    for middle in np.flatnonzero(size > UP_AND_DOWN) + 1:
+        x, y = profile.place[edges[middle]].mean(axis=0)
+        around, amplitude = slice(middle - 1, middle + 2), float(size[middle - 1])
+        yield Finding(
+            f"stretch {name}",
+            amplitude,
+            f"contact '{name}': the stretch of the surface goes up and down by ±{amplitude:.2g} from one mesh edge to "
+            f"the next near ({x:.4g}, {y:.4g}), and the wear with it: take smaller elements there",
+            np.column_stack([profile.reference[edges[around]].mean(axis=1), length[around]]),
+        )
 
 
 def _imbalance(stage: Stage, forces: Mapping[str, Array]) -> Iterator[Finding]:

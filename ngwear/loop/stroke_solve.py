@@ -14,7 +14,7 @@ from ngwear.equilibrium.problem import Problem
 from ngwear.equilibrium.state_transfer import unfold
 from ngwear.equilibrium.stepping import StepOptions, Work, advance, relax, settle
 from ngwear.errors import ConvergenceError
-from ngwear.loop.bearable_friction import advance_while_sliding, is_too_much, takes_less
+from ngwear.loop.bearable_friction import takes_less
 from ngwear.loop.carried_state import HARDEST, set_to_end
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import State
@@ -30,8 +30,6 @@ EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is
 FAR = 0.1  # of the section: how far a fluid passes contacts in one solve on a new mesh, before steps are taken
 RESTS = 3  # a solve at once that has failed so often in a row is tried in every eighth solve
 AHEAD = 2  # load steps of the last way that may be left out behind one that fails
-# Settled on an X-ring: the list says by which command.
-MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
 
@@ -166,8 +164,7 @@ def pass_stroke(state: State, index: int, stroke: Stroke, sliding: Strokes, *, s
     """Solve a stroke without wear in load steps from the end of the one before; return the Newton iterations.
 
     Unlike ``solve_stroke``, which begins at its last equilibrium, and where friction sticks finds that again. The phase
-    then has the way, and a next solve goes that way again, at its load steps. A part that does not bear the friction
-    is solved with less of it, as in the cycle in which it was mounted (``advance_while_sliding``).
+    then has the way, and a next solve goes that way again, at its load steps.
 
     Raises
     ------
@@ -177,24 +174,13 @@ def pass_stroke(state: State, index: int, stroke: Stroke, sliding: Strokes, *, s
     stage, problem, phase, work = state.stage, state.stage.problem, state.phases[index], Work()
     _begin(state, index, stroke, sliding, ())
     options = StepOptions(first=1 / steps, largest=1 / steps, smallest=HARDEST, leaps=False)
-    path: list[tuple[float, Array]] = []
-    try:
-        if phase.path:
-            phase.fewest = True
-            path, _ = _follow(state, index, stroke, work, options)
-        else:
-            _begin_path(state, index)
-            work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
-    except ConvergenceError as error:
-        if not is_too_much(error):
-            raise
-        log.info("%s: as in the first cycle", error)
+    if phase.path:
+        phase.fewest = True
+        path, _ = _follow(state, index, stroke, work, options)
+    else:
         path = []
         _begin_path(state, index)
-        begin, way = problem.state.vec.FV().NumPy().copy(), steps_for(state, index, StepOptions(first=MOVING))
-        more, _ = advance_while_sliding(state, stroke.name, stage.stroke_loads(stroke), way, begin=begin)
-        work.add(more)
-        stage, problem, phase = state.stage, state.stage.problem, state.phases[index]  # maybe on other elements
+        work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
     state.work.add(work)
     vector, passed, left = problem.state.vec.FV().NumPy().copy(), stage.fluid_passed(), stage.fluid_left()
     shares = stage.shares(stroke)

@@ -4,10 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from ngwear.equilibrium.newton import Outcome, Report
-from ngwear.equilibrium.stepping import Work
 from ngwear.errors import ConvergenceError
-from ngwear.loop import bearable_friction, repeating_cycle, stepper, stroke_solve
+from ngwear.loop import repeating_cycle, stepper
 from ngwear.loop.repeating_cycle import CYCLE_STEPS, REPEATS, largest_change
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.stroke_solve import pass_stroke
@@ -59,35 +57,6 @@ def test_a_cycle_that_fails_leaves_the_one_before(sticking, monkeypatch):
     assert state.strokes == 0
     (told,) = [found for found in state.reports[-1].findings if found.key == "creep"]
     assert "no equilibrium was found in its second cycle" in told.sentence
-
-
-def test_a_cycle_whose_friction_creases_the_surface_is_repeated_with_less_of_it(sticking, monkeypatch):
-    """Load steps that crease at first: then the friction is lowered, as in the cycle in which it is mounted."""
-    walker = Stepper(sticking)
-    state = walker.start()
-    creased = Report(Outcome.CREASED)
-
-    def crease(*args, **kwargs):
-        raise ConvergenceError("creases", creased)
-
-    def half(stage, stroke, target, error, start, **kwargs):
-        lowered.append((stroke, error.report))
-        start.restore(stage)
-        return Work(iterations=7)
-
-    lowered = []
-    monkeypatch.setattr(stroke_solve, "advance", crease)
-    monkeypatch.setattr(stroke_solve, "_follow", crease)
-    monkeypatch.setattr(bearable_friction, "advance_on_finer", crease)
-    monkeypatch.setattr(bearable_friction, "lower_friction", half)
-    stroke = sticking.program.cycle[1]
-    assert pass_stroke(state, 1, stroke, walker._strokes(1, 0), steps=CYCLE_STEPS) == 7
-    assert lowered == [(stroke.name, creased)]
-    assert state.phases[1].path == []
-    creased.outcome = Outcome.STALLED
-    with pytest.raises(ConvergenceError, match="creases"):
-        pass_stroke(state, 1, stroke, walker._strokes(1, 0), steps=CYCLE_STEPS)
-    assert len(lowered) == 1, "it may snap there: no reason for less friction"
 
 
 def test_the_change_is_that_of_the_forces_over_the_largest():

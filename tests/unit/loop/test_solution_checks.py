@@ -9,7 +9,7 @@ import pytest
 import ngwear as nw
 from ngwear.geometry.outline import Outline
 from ngwear.loop.run import run
-from ngwear.loop.solution_checks import findings
+from ngwear.loop.solution_checks import _uneven_stretch, findings
 from ngwear.loop.stepper import Stepper
 from ngwear.surfaces import Plane
 
@@ -97,6 +97,26 @@ def test_a_pressure_that_goes_up_and_down_twice_on_five_nodes_is_found(solved, l
     assert found(stage, report, contacts={"plate": replace(some, pressure=even)}) == {}
     nothing = replace(some, pressure=1e-300 * rough)
     assert found(stage, report, contacts={"plate": nothing}) == {}
+
+
+@pytest.mark.parametrize(("longer", "told"), [(0.15, True), (0.05, False)])
+def test_a_stretch_that_goes_up_and_down_from_edge_to_edge_is_found(solved, longer, told):
+    """Where the contact bears more than half of its peak; beside it, it wears little. Only of a surface that wears."""
+    stage, report = solved
+    profile = report.contacts["plate"]
+    k = len(profile.t)
+    ways = np.diff(profile.place, axis=0)
+    bell = replace(profile, pressure=np.exp(-(np.linspace(-3, 3, k) ** 2)))
+    for first, bears in ((k // 2, True), (1, False)):
+        uneven = ways.copy()
+        uneven[first] *= 1 + longer
+        place = np.vstack([profile.place[:1], profile.place[0] + np.cumsum(uneven, axis=0)])
+        rough = list(_uneven_stretch("plate", replace(bell, place=place)))
+        assert len(rough) == (told and bears)
+        for finding in rough:
+            assert finding.amount == pytest.approx(longer / 2, rel=0.2)
+            assert np.linalg.norm(finding.places[1, :2] - profile.reference[first : first + 2].mean(axis=0)) < 1e-9
+        assert found(stage, report, contacts={"plate": replace(profile, place=place)}) == {}
 
 
 def test_forces_that_do_not_balance_are_found(scene, solved):
