@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 from types import ModuleType
 
@@ -12,14 +14,16 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.stepping import StepOptions
 from ngwear.errors import ConvergenceError, MeshError
 from ngwear.loop.bearable_friction import advance_while_sliding
-from ngwear.loop.finer_mesh import advance_on_finer
-from ngwear.loop.mounting import mount
+from ngwear.loop.finer_mesh import FINER, advance_on_finer
+from ngwear.loop.mounting import mount, unworn_body
 from ngwear.loop.placing import place_beside_wall, unloaded
+from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State
 from ngwear.loop.stroke_report import Forces
 from ngwear.loop.stroke_solve import recorder, steps_for
 
 Array = NDArray[np.float64]
+log = logging.getLogger(__name__)
 
 # Settled on an X-ring: the list in tests/benchmarks/README.md says by which command.
 MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
@@ -28,16 +32,32 @@ MOVING = 1 / 16  # of a load change: the first step of a part with room to move;
 def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:
     """Mount the unloaded part and solve each stroke of the cycle once, in load steps, each from the one before.
 
-    A part that friction rolls over on its way to a wall is mounted anew, beside that wall.
+    A part that friction rolls over on its way to a wall is mounted anew, beside that wall. One that cannot be
+    mounted, and does not show why, is mounted once more from the beginning, on elements of half the edges.
 
     Returns the forces on the part in each stroke.
     """
+    first = state.work.solves == 0
     try:
         return _first_cycle(state, on_mount, lost_elements)
     except (ConvergenceError, MeshError) as error:
-        if not place_beside_wall(state, error):
+        if not place_beside_wall(state, error) and not (first and _mesh_finer(state, error)):
             raise
     return _first_cycle(state, on_mount, lost_elements)
+
+
+def _mesh_finer(state: State, error: ConvergenceError | MeshError) -> bool:
+    """Mesh the unworn part with half of the edges; False if it was mounted, or ``error`` tells a cause."""
+    scene, explained = state.stage.scene, isinstance(error, ConvergenceError) and bool(error.cause)
+    if state.phases or explained or scene.deactivation is not None:
+        return False
+    lengths = scene.accuracy.lengths
+    patch, mounting, coarse = (FINER * length for length in (lengths.patch, lengths.mounting, lengths.coarse))
+    finer = replace(scene, accuracy=replace(scene.accuracy, patch=patch, mounting=mounting, coarse=coarse))
+    log.info("%s: mounted on elements of half the edges", error)
+    state.stage = Stage(scene, unworn_body(finer, state.across))
+    state.fine = np.empty((0, 3))
+    return True
 
 
 def _first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:

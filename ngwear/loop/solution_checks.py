@@ -1,4 +1,4 @@
-"""Look at an accepted solve: overlap, zigzag pressures, uneven stretch, imbalance, crushed elements, folds, blow-by, rolling.
+"""Look at an accepted solve: overlap, zigzag pressures, uneven stretch, imbalance, crushed elements, folds, blow-by.
 
 Every stroke that is recorded is looked at. A finding is a sentence with the place and the value; the run keeps the
 worst of each kind and place, and lists them as warnings.

@@ -7,8 +7,9 @@ import pytest
 
 import ngwear as nw
 from ngwear.equilibrium import stepping
+from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError
-from ngwear.loop import bearable_friction, finer_mesh, stepper
+from ngwear.loop import bearable_friction, finer_mesh, first_cycle, stepper
 from ngwear.loop.bearable_friction import LEAST, REVERSED
 from ngwear.loop.finer_mesh import EVERYWHERE, LOCALLY, refine_at, unresolved
 from ngwear.loop.solution_checks import ROLLS, Finding
@@ -207,3 +208,27 @@ def test_a_part_without_an_equilibrium_is_not_passed_on_coarser_elements(ring, m
     with pytest.raises(ConvergenceError) as raised:
         Stepper(ring).start()
     assert raised.value is error
+
+
+@pytest.mark.parametrize(("cause", "again"), [("", True), ("it creases", False)])
+def test_a_part_that_cannot_be_mounted_is_mounted_on_half_the_edges(fine_sheet, monkeypatch, cause, again):
+    """Once, also a part that is held; not if the part itself shows the cause."""
+    elements, mount = [], first_cycle.mount
+
+    def fails_once(stage, on_mount, way):
+        elements.append(stage.body.mesh.ne)
+        if len(elements) == 1:
+            raise ConvergenceError("stopped", Report(Outcome.STALLED), cause=cause)
+        return mount(stage, on_mount, way)
+
+    monkeypatch.setattr(first_cycle, "mount", fails_once)
+    if not again:
+        with pytest.raises(ConvergenceError, match="stopped"):
+            Stepper(fine_sheet).start()
+        assert len(elements) == 1
+        return
+    state = Stepper(fine_sheet).start()
+    assert len(elements) == 2
+    assert elements[1] > 1.5 * elements[0]
+    assert state.stage.scene.accuracy == Stepper(fine_sheet).scene.accuracy, "the scene's own, for the meshes to come"
+    assert len(state.reports) == len(fine_sheet.program.cycle)
