@@ -254,13 +254,16 @@ def alternating(section: Section) -> list[str]:
 
 
 def disagreement(coarse: Path, fine: Path) -> list[str]:
-    """Quantities in which two runs differ by more than the first one's stated error, or 5 % if that is less."""
+    """Quantities in which two runs differ by more than the first one's stated error, or 5 % if that is less.
+
+    Stated errors are shares of the first run's own values.
+    """
     one, other = (json.loads((folder / "summary.json").read_text()) for folder in (coarse, fine))
     found = []
     for what in COMPARED:
         column = next(name for name in one if name.startswith(f"{what} ["))
         stated = one["error estimates"].get(f"{what} [-]") or 0.0
-        off = abs(one[column] - other[column]) / max(abs(other[column]), 1e-12)
+        off = abs(one[column] - other[column]) / max(abs(one[column]), 1e-12)
         if off > max(DIFFERS, stated):
             found.append(f"{what} is off by {100 * off:.0f} %, stated {100 * stated:.1f} %")
     return found
