@@ -163,7 +163,7 @@ class Stepper:
     def settle_on_new_mesh(self, state: State, *, anew: bool = True) -> None:
         """Settle the cycle from the states carried over.
 
-        A part with room to move settles at once, or after ``settle_carried``, or else it is mounted ``anew``, if asked.
+        A part with room to move settles at once, or after ``settle_carried``, or else, if asked, is mounted ``anew``.
 
         Raises
         ------
@@ -179,7 +179,7 @@ class Stepper:
         ways = [self._held_back] if floats else []
         if anew:
             ways.append(self._anew)
-        if state.stage.has_stick_slip or not ways:
+        if (anew and state.stage.has_stick_slip) or not ways:
             ways.append(self._settle_cycle)
         for way in ways:
             state.restore(carried | {"phases": [replace(phase) for phase in carried["phases"]]})

@@ -76,6 +76,23 @@ def test_else_it_is_mounted_anew(ring, carried, monkeypatch):
     assert push(state) == pytest.approx(before, rel=0.05)
 
 
+def test_an_estimate_ends_where_the_carried_states_do_not_settle(ring, carried, monkeypatch):
+    """Neither mounted anew, nor in load steps: these take longer than the run."""
+    state, _ = carried
+    ways = []
+
+    def fails(self, state, at_once=False, lowers=False):
+        ways.append(at_once)
+        raise ConvergenceError("no equilibrium")
+
+    monkeypatch.setattr(Stepper, "_settle_cycle", fails)
+    monkeypatch.setattr(stepper, "first_cycle", None)
+    with pytest.raises(ConvergenceError):
+        Stepper(ring).settle_on_new_mesh(state, anew=False)
+    assert len(ways) == 2, "at once, and after the springs"
+    assert ways[0]
+
+
 def test_springs_hold_a_state_from_which_a_solve_goes_elsewhere(carried):
     """What the sharp laws do not settle at once, springs bring to an equilibrium nearby, from some of eight noises."""
     state, _ = carried
