@@ -20,13 +20,10 @@ from ngwear.loop.placing import place_beside_wall, unloaded
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State
 from ngwear.loop.stroke_report import Forces
-from ngwear.loop.stroke_solve import recorder, steps_for
+from ngwear.loop.stroke_solve import MOVING, recorder, steps_for
 
 Array = NDArray[np.float64]
 log = logging.getLogger(__name__)
-
-# Settled on an X-ring: the list in tests/benchmarks/README.md says by which command.
-MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
 
 
 def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:

@@ -30,6 +30,8 @@ EMPTIES = 1 / 8  # of the fall of a fluid's pressure in a load step: so exact is
 FAR = 0.1  # of the section: how far a fluid passes contacts in one solve on a new mesh, before steps are taken
 RESTS = 3  # a solve at once that has failed so often in a row is tried in every eighth solve
 AHEAD = 2  # load steps of the last way that may be left out behind one that fails
+# Settled on an X-ring: the list says by which command.
+MOVING = 1 / 16  # of a load change: the first step of a part with room to move; it grows while it is easy
 LOWERED = 3  # times in a solve: how often the friction is lowered that a worn part does not bear any more
 
 
@@ -164,7 +166,8 @@ def pass_stroke(state: State, index: int, stroke: Stroke, sliding: Strokes, *, s
     """Solve a stroke without wear in load steps from the end of the one before; return the Newton iterations.
 
     Unlike ``solve_stroke``, which begins at its last equilibrium, and where friction sticks finds that again. The phase
-    then has the way, and a next solve goes that way again, at its load steps.
+    then has the way, and a next solve goes that way again, at its load steps. Where these fail the part may snap: then
+    they are shorter, as in the cycle in which it was mounted, and it may move over to another equilibrium.
 
     Raises
     ------
@@ -174,13 +177,15 @@ def pass_stroke(state: State, index: int, stroke: Stroke, sliding: Strokes, *, s
     stage, problem, phase, work = state.stage, state.stage.problem, state.phases[index], Work()
     _begin(state, index, stroke, sliding, ())
     options = StepOptions(first=1 / steps, largest=1 / steps, smallest=HARDEST, leaps=False)
-    if phase.path:
-        phase.fewest = True
-        path, _ = _follow(state, index, stroke, work, options)
-    else:
-        path = []
-        _begin_path(state, index)
-        work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
+    try:
+        if phase.path:
+            phase.fewest = True
+            path, _ = _follow(state, index, stroke, work, options)
+        else:
+            path = _from_last_stroke(state, index, stroke, work, options)
+    except ConvergenceError as error:
+        log.info("%s: as in the first cycle", error)
+        path = _from_last_stroke(state, index, stroke, work, StepOptions(first=MOVING))
     state.work.add(work)
     vector, passed, left = problem.state.vec.FV().NumPy().copy(), stage.fluid_passed(), stage.fluid_left()
     shares = stage.shares(stroke)
@@ -359,11 +364,18 @@ def _approach(state: State, index: int, stroke: Stroke, work: Work, options: Ste
             log.info("the fluid passes a contact at once: trying from the previous stroke")
         except ConvergenceError as error:
             log.info("%s: trying from the previous stroke", error)
-    _begin_path(state, index)
-    path: list[tuple[float, Array]] = []
-    options = steps_for(state, index, options)
-    work.add(advance(problem, stage.stroke_loads(stroke), options, on_step=recorder(problem, path)))
+    path = _from_last_stroke(state, index, stroke, work, steps_for(state, index, options))
     return path if follows and not lowered else []
+
+
+def _from_last_stroke(
+    state: State, index: int, stroke: Stroke, work: Work, options: StepOptions
+) -> list[tuple[float, Array]]:
+    """Reach a stroke's equilibrium in load steps from the previous stroke of the cycle; return these steps."""
+    stage, path = state.stage, list[tuple[float, Array]]()
+    _begin_path(state, index)
+    work.add(advance(stage.problem, stage.stroke_loads(stroke), options, on_step=recorder(stage.problem, path)))
+    return path
 
 
 def recorder(problem: Problem, path: list[tuple[float, Array]]) -> Callable[[float, Report], None]:

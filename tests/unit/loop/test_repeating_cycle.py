@@ -5,10 +5,10 @@ from dataclasses import replace
 import pytest
 
 from ngwear.errors import ConvergenceError
-from ngwear.loop import repeating_cycle, stepper
+from ngwear.loop import repeating_cycle, stepper, stroke_solve
 from ngwear.loop.repeating_cycle import CYCLE_STEPS, REPEATS, largest_change
 from ngwear.loop.stepper import Stepper
-from ngwear.loop.stroke_solve import pass_stroke
+from ngwear.loop.stroke_solve import MOVING, pass_stroke
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +57,30 @@ def test_a_cycle_that_fails_leaves_the_one_before(sticking, monkeypatch):
     assert state.strokes == 0
     (told,) = [found for found in state.reports[-1].findings if found.key == "creep"]
     assert "no equilibrium was found in its second cycle" in told.sentence
+
+
+def test_a_stroke_that_snaps_is_passed_in_shorter_load_steps(sticking, monkeypatch):
+    """As in the cycle in which the part was mounted; if they fail, too, so does the stroke."""
+    walker = Stepper(sticking)
+    state = walker.start()
+    tried, advance = [], stroke_solve.advance
+
+    def snaps(problem, target, options, **kwargs):
+        tried.append(options)
+        if not options.leaps or len(tried) > 2:
+            raise ConvergenceError("snaps")
+        return advance(problem, target, options, **kwargs)
+
+    monkeypatch.setattr(stroke_solve, "advance", snaps)
+    stroke, before = sticking.program.cycle[1], state.stage.forces()
+    state.phases[1].path = []
+    pass_stroke(state, 1, stroke, walker._strokes(1, 0), steps=CYCLE_STEPS)
+    assert [options.first for options in tried] == [1 / CYCLE_STEPS, MOVING]
+    assert largest_change([before], [state.stage.forces()]) <= 2 * REPEATS
+    assert state.phases[1].path
+    state.phases[1].path = []
+    with pytest.raises(ConvergenceError, match="snaps"):
+        pass_stroke(state, 1, stroke, walker._strokes(1, 0), steps=CYCLE_STEPS)
 
 
 def test_the_change_is_that_of_the_forces_over_the_largest():
