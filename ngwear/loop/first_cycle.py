@@ -11,6 +11,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from ngwear.equilibrium.newton import Outcome
 from ngwear.equilibrium.stepping import StepOptions
 from ngwear.errors import ConvergenceError, MeshError
 from ngwear.loop.bearable_friction import advance_while_sliding
@@ -44,8 +45,10 @@ def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: 
 
 
 def _mesh_finer(state: State, error: ConvergenceError | MeshError) -> bool:
-    """Mesh the unworn part with half of the edges; False if it was mounted, or ``error`` tells a cause."""
-    scene, explained = state.stage.scene, isinstance(error, ConvergenceError) and bool(error.cause)
+    """Mesh the unworn part with half of the edges; False if it was mounted, ``error`` tells a cause, or nothing holds it."""
+    scene, explained = state.stage.scene, False
+    if isinstance(error, ConvergenceError):
+        explained = bool(error.cause) or (error.report is not None and error.report.outcome is Outcome.SINGULAR)
     if state.phases or explained or scene.deactivation is not None:
         return False
     lengths = scene.accuracy.lengths
