@@ -45,7 +45,7 @@ def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: 
 
 
 def _mesh_finer(state: State, error: ConvergenceError | MeshError) -> bool:
-    """Mesh the unworn part with half of the edges; False if it was mounted, ``error`` tells a cause, or nothing holds it."""
+    """Mesh the unworn part with half of the edges; False if it was mounted, or ``error`` tells why it was not."""
     scene, explained = state.stage.scene, False
     if isinstance(error, ConvergenceError):
         explained = bool(error.cause) or (error.report is not None and error.report.outcome is Outcome.SINGULAR)
