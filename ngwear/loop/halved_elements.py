@@ -41,10 +41,9 @@ REMAINS = 1.25 * 2.0  # factor of safety, times the error of first order over wh
 def add_mesh_errors(state: State) -> list[str]:
     """Store the relative errors by the mesh in the present state in ``State.mesh_errors``, unless they are known.
 
-    They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; the error
-    of the depth is that of the largest wear per cycle, and of the wear at its place: largest values may agree by chance
-    though those of each place do not. ``State.wear_changes`` has the changes at all places. Not for a part that is
-    held, or rubber with memory. Returns a warning if there is no equilibrium on the finer elements.
+    They are those of depth, area, peak pressure, contact width and friction, by their names in the summary; that of the
+    depth is that of the largest wear per cycle. ``State.wear_changes`` has the changes at all places. Not for a part
+    that is held, or rubber with memory. Returns a warning if there is no equilibrium on the finer elements.
     """
     if state.mesh_errors or state.memory is not None or not remeshes(state):
         return []
@@ -61,8 +60,6 @@ def add_mesh_errors(state: State) -> list[str]:
     changes = relative_errors(mine, other)
     if DEPTH in changes:  # something wears
         state.wear_changes = _wear_changes(here, there)
-        first = state.wear_changes[state.wear_changes[:, 2].argmax(), :2]
-        changes[DEPTH] = max(changes[DEPTH], _change_at(state, first))
     state.mesh_errors = {f"{name[:-4]} {BY_HALVED}": REMAINS * change for name, change in changes.items()}
     state.first_wear = _largest_wear(mine)
     return []
@@ -72,13 +69,16 @@ def faded(state: State) -> dict[str, float]:
     """``State.mesh_errors`` times what is left of the largest wear per cycle; that of the peak pressure whole.
 
     To that of the peak pressure, what the present peaks may be read too low by is added. That of the depth is at least
-    that of the place that is the deepest now.
+    that of the wear at the place that is the deepest now, or wears most if nothing has worn: largest values may agree
+    by chance though those of each place do not.
     """
     left = min(1.0, _largest_wear(read_cycle(state)) / state.first_wear) if state.first_wear > 0 else 1.0
     errors = dict(state.mesh_errors)
-    if BY_DEPTH in errors and state.depths is not None:
-        deepest = state.contour.points[state.depths[0].argmax()]
-        errors[BY_DEPTH] = max(errors[BY_DEPTH], REMAINS * _change_at(state, deepest))
+    if len(state.wear_changes):
+        place = state.wear_changes[state.wear_changes[:, 2].argmax(), :2]
+        if state.depths is not None:
+            place = state.contour.points[state.depths[0].argmax()]
+        errors[BY_DEPTH] = max(errors[BY_DEPTH], REMAINS * _change_at(state, place))
     errors = {name: error * (1.0 if name == BY_PEAK else left) for name, error in errors.items()}
     if BY_PEAK in errors:
         profiles = [profile for report in state.reports for profile in report.contacts.values()]
@@ -101,13 +101,13 @@ def _wear_changes(here: State, there: State) -> Array:
 
 
 def _change_at(state: State, place: Array) -> float:
-    """Change of the wear per cycle at a place, over the largest wear [-]; the largest of the ``NEAR`` places there.
+    """Change of the wear per cycle at a place, over the largest wear [-]; the mean of the ``NEAR`` places there.
 
     At a single place the pressures of both meshes may cross each other.
     """
     _, near = cKDTree(state.wear_changes[:, :2]).query(place, k=min(NEAR, len(state.wear_changes)))
     largest = state.wear_changes[:, 2].max()
-    return float(state.wear_changes[near, 3].max() / largest) if largest > 0 else 0.0
+    return float(state.wear_changes[near, 3].mean() / largest) if largest > 0 else 0.0
 
 
 def _largest_wear(read: Quantities) -> float:
