@@ -28,7 +28,7 @@ log = logging.getLogger(__name__)
 
 # Beyond, a contact has only begun to spread, or the mesh shows; checked by ``tests/stability`` (wearing.py).
 CALM = 0.1  # error of a step over what it wears, up to which the next one may rely on it
-AREA_GATE = 0.05  # of a step's worn area: how far a healed outline may miss it; a shorter step heals less
+AREA_GATE = 0.05  # of a step's worn area: how far an outline healed or without tongues may miss it
 
 
 @dataclass
@@ -291,7 +291,8 @@ class WearStep:
 def _follow(state: State, outline: Outline, worn: Outline) -> None:
     """Move the mesh to the worn outline; remesh if that fails, unless the scene forbids it.
 
-    Tongues that the mesher cannot fill are taken off: they tear off before they wear off. The ledger shows it.
+    Tongues that the mesher cannot fill are taken off: they tear off before they wear off. The ledger shows it. They may
+    have a share (``AREA_GATE``) of the area that the step wears.
     """
     body, why = state.stage.body, "the outline needs other points"
     if len(worn) == len(outline):
@@ -312,7 +313,7 @@ def _follow(state: State, outline: Outline, worn: Outline) -> None:
         remesh(state, worn)
     except MeshError as error:
         blunt = without_tongues(worn, state.stage.scene.worn_edges)
-        if blunt is worn:
+        if blunt is worn or worn.area - blunt.area > AREA_GATE * (outline.area - worn.area):
             raise
         log.info("%s: tongues of the outline are taken off", error)
         state.ledger.removed += worn.area - blunt.area

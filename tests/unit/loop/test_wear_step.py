@@ -146,6 +146,8 @@ def test_a_tongue_that_the_mesher_cannot_fill_is_taken_off_and_booked(fine_sheet
         np.insert(outline.corners, i + 1, [False] * 3),
     )
     removed = state.ledger.removed
-    _follow(state, outline, new)
+    with pytest.raises(MeshError):
+        _follow(state, outline, new)  # too much for a step that wears nothing
+    _follow(state, replace(outline, points=1.1 * outline.points), new)  # little of what such a step wears
     assert state.ledger.removed - removed == pytest.approx(0.05 * length**2, rel=1e-6)
     assert state.contour.area == pytest.approx(outline.area, rel=1e-9)
