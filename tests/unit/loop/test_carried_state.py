@@ -5,8 +5,9 @@ import pytest
 
 import ngwear as nw
 from ngwear.equilibrium.attempts import let_go, solve
+from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError
-from ngwear.loop import stepper
+from ngwear.loop import carried_state, stepper
 from ngwear.loop.carried_state import settle_carried
 from ngwear.loop.finer_mesh import refine_everywhere
 from ngwear.loop.stepper import Stepper
@@ -116,6 +117,16 @@ def test_every_stroke_is_carried(carried):
     vectors = [phase.vector for phase in state.phases]
     settle_carried(state)
     assert all((phase.vector != vector).any() for phase, vector in zip(state.phases, vectors, strict=True))
+
+
+def test_a_sticking_part_is_not_solved_again_from_where_springs_do_not_hold_it(carried, monkeypatch):
+    state, _ = carried
+    assert state.stage.has_stick_slip
+    monkeypatch.setattr(carried_state, "let_go", lambda problem: [Report(Outcome.STALLED)])
+    before = [phase.vector.copy() for phase in state.phases]
+    with pytest.raises(ConvergenceError, match="springs"):
+        settle_carried(state)
+    assert all((phase.vector == vector).all() for phase, vector in zip(state.phases, before, strict=True))
 
 
 def wall(x, normal):
