@@ -243,6 +243,12 @@ class ContactProfile:
                 widths[zone.nodes[i - 1]] = min((ends[1] - ends[0]) / HERTZ, zone.width)
         return widths
 
+    def mean_width(self) -> float:
+        """Mean width of the zones, by the load that each bears [mm]; 0 without load."""
+        zones = self.zones()
+        loads = [float(self.load[zone.nodes].sum()) for zone in zones]
+        return sum(load * zone.width for load, zone in zip(loads, zones, strict=True)) / (sum(loads) or 1.0)
+
     def _pieces(self, on: NDArray[np.bool_]) -> list[Zone]:
         """Connected pieces of these nodes."""
         joined = np.zeros(len(on) + 1, dtype=bool)  # whether a mesh edge joins node i - 1 to node i

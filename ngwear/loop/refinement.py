@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 # an O-ring that could not be meshed with few elements: see the list in tests/benchmarks/README.md.
 FINER = 0.7  # of the size that the contacts ask for: what the indicator must fall below to be heard
 NARROWEST = 0.25  # of the patch: elements of the narrowest bumps
+MOST = 0.7  # of the largest wear rate: from there on a stroke's own patch counts. Settled on two U-cups: see that list
 NEAR, NEARER = 2.0, 1.0  # patches: gaps that may close soon, and sooner
 LEAST = 0.5  # of these: also where wear has not so much left to close
 TURN, WIDEST_TURN = 0.5, 0.7  # rad, of the outline between nodes off the contacts; with few elements across
@@ -91,8 +92,10 @@ def contact_sizes(
 
     The size is ``patch`` where a refined contact carries load, where its gap is below ``reach`` times ``patch``, or
     where wear over a sliding distance of ``sliding`` [mm] may close the gap. The gap limit is smaller, down to half, if
-    the remaining sliding distance ``left`` [mm] wears less than ``NEAR`` times ``patch``. With ``across``, narrow bumps
-    of pressure have smaller elements, this number across each, down to ``NARROWEST`` times ``patch``.
+    the remaining sliding distance ``left`` [mm] wears less than ``NEAR`` times ``patch``.
+    With ``across``, narrow bumps of pressure have smaller elements, this number across each, down to ``NARROWEST``
+    times ``patch``; in the strokes that wear the most (``MOST``), times what the contact's own width there gives: a lip
+    wears at its tip in one stroke, and lies flat in another that bears more.
     On an outline that has ``worn`` they have none smaller than now, and none smaller for the outline's curvature: it
     has points for these only, and between them finer elements find peaks that are none.
 
@@ -104,22 +107,26 @@ def contact_sizes(
     size, fronts = np.full(len(contour), np.inf), [np.empty((0, 2))]
     vector = stage.problem.state.vec.FV().NumPy()
     keep = vector.copy()
+    found: list[tuple[ContactProfile, float]] = []  # and the largest wear over the sliding distance [mm/mm]
     for phase in phases:
         vector[:] = phase
         for spec in stage.scene.followed:
             contact = stage.contacts[spec.name]
             profile = contact.profile()
-            pressure = profile.nominal_pressure
-            wearing = pressure * contact.wear_factor(profile.pressure)
-            rate = spec.wear_rate.highest * wearing.max(initial=0.0)
-            deepest = rate * left if rate > 0 else 0.0
-            soon = reach * min(lengths.patch, max(LEAST * lengths.patch, deepest / NEAR)) + rate * sliding
-            patch = element_edges(profile, lengths.patch, across, worn=worn)
-            near = (pressure > 0) | (profile.gap < soon)
-            ask = _spanned(contour, profile, near)
-            size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
+            wearing = profile.nominal_pressure * contact.wear_factor(profile.pressure)
+            found.append((profile, spec.wear_rate.highest * float(wearing.max(initial=0.0))))
         fronts += [_beside(contour, fluid.fronts(), lengths.patch) for fluid in stage.leaking]
     vector[:] = keep
+    largest = max((rate for _, rate in found), default=0.0)
+    for profile, rate in found:
+        deepest = rate * left if rate > 0 else 0.0
+        soon = reach * min(lengths.patch, max(LEAST * lengths.patch, deepest / NEAR)) + rate * sliding
+        patch = element_edges(profile, lengths.patch, across, worn=worn, narrow=0 < MOST * largest <= rate)
+        near = (profile.nominal_pressure > 0) | (profile.gap < soon)
+        beside = (profile.nominal_pressure == 0) & (profile.gap >= reach * patch)
+        patch = np.where(beside, np.maximum(patch, NARROWEST * lengths.patch), patch)
+        ask = _spanned(contour, profile, near)
+        size[ask] = np.minimum(size[ask], np.interp(np.flatnonzero(ask), profile.t, patch, period=len(contour)))
     ask, places = size < np.inf, np.vstack(fronts)
     seeds, sizes = np.vstack([contour.points[ask], places]), np.append(size[ask], np.full(len(places), lengths.patch))
     turn = TURN if across is None else min(TURN * max(1.0, FEW / across), WIDEST_TURN)
@@ -150,16 +157,20 @@ def _beside(contour: Outline, t: Array, apart: float) -> Array:
     return contour.at(np.interp(there.ravel() % ways[-1], ways, points))
 
 
-def element_edges(profile: ContactProfile, patch: float, across: float | None, *, worn: bool = False) -> Array:
+def element_edges(
+    profile: ContactProfile, patch: float, across: float | None, *, worn: bool = False, narrow: bool = False
+) -> Array:
     """Element edge at each node of a contact, by the bump's width at the nearest loaded one, shape (k,) [mm].
 
-    ``worn`` as in ``contact_sizes``.
+    ``worn`` as in ``contact_sizes``. ``narrow``: the least edge is a share of what the contact's own width gives, if
+    that is less than ``patch``.
     """
     if across is None or not (widths := profile.bump_widths()).any():
         return np.full(len(profile.t), patch)
+    narrowest = NARROWEST * (min(patch, profile.mean_width() / across) if narrow else patch)
     loaded = np.flatnonzero(widths)
     nearest = np.abs(profile.t[:, None] - profile.t[loaded]).argmin(axis=1)
-    least = np.clip(profile.shortest_edges, NARROWEST * patch, patch) if worn else NARROWEST * patch
+    least = np.clip(profile.shortest_edges, narrowest, patch) if worn else narrowest
     return np.clip(widths[loaded][nearest] / across, least, patch)
 
 

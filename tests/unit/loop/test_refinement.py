@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from ngwear.effects.contact_profile import ContactProfile
+from ngwear.loop.element_sizes import with_patch
 from ngwear.loop.refinement import LEAST, NARROWEST, NEAR, contact_sizes, element_edges, is_too_coarse, required_sizes
 from ngwear.loop.stepper import Stepper
 from ngwear.scene.accuracy import Accuracy
@@ -82,6 +83,9 @@ def test_narrow_zones_have_elements_of_their_own():
     assert sizes[[0, 1, 2, 3, 4]] == pytest.approx(patch)
     assert sizes[[5, 6, 7, 8]] == pytest.approx(widths[1] / 4)
     assert sizes[[9, 10, 11]] == pytest.approx(max(widths[2] / 4, NARROWEST * patch))
+    narrow = element_edges(profile, 8 * patch, 4.0, narrow=True)
+    assert narrow[10] == pytest.approx(max(widths[2] / 4, NARROWEST * profile.mean_width() / 4))
+    assert element_edges(profile, 8 * patch, 4.0)[10] == pytest.approx(2 * patch)
     assert element_edges(profile, patch, None) == pytest.approx(patch)
     assert element_edges(replace(profile, pressure=np.zeros(12)), patch, 4.0) == pytest.approx(patch)
 
@@ -169,8 +173,21 @@ def test_elements_across_are_counted_in_each_zone(sheet):
     (zone,) = stage.contacts["roller"].profile().zones()
     assert own.sizes == pytest.approx(min(zone.width / 6.0, stage.scene.accuracy.patch), rel=0.1)
     assert own.sizes.max() <= zone.width / 6.0
-    with_more = contact_sizes(stage, phases, across=1e3).sizes
-    assert with_more == pytest.approx(NARROWEST * stage.scene.accuracy.patch)
+
+
+def test_a_contact_that_is_wide_in_another_stroke_only_has_elements_by_its_own_width(sheet):
+    """Beside it, where a gap is wider than these, they are as small as other strokes ask for."""
+    state = Stepper(replace(sheet, accuracy=Accuracy(across=6.0))).start()
+    stage, phases = state.stage, [p.vector for p in state.phases]
+    profile = stage.contacts["roller"].profile()
+    (zone,) = profile.zones()
+    assert profile.mean_width() == pytest.approx(zone.width)
+    wide = 20 * zone.width / 6.0  # the patch of a stroke in which it is as many times as wide
+    stage.scene = with_patch(stage.scene, wide)
+    own = contact_sizes(stage, phases, across=6.0)
+    inside = np.isclose(own.sizes, zone.width / 6.0, rtol=0.1)
+    assert inside.any()
+    assert own.sizes[~inside] == pytest.approx(NARROWEST * wide)
 
 
 def test_a_tolerance_of_one_asks_for_nothing(started):
