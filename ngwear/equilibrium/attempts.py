@@ -9,7 +9,8 @@ from dataclasses import replace
 import ngsolve as ng
 import numpy as np
 
-from ngwear.effects.base import DISPLACEMENT
+from ngwear.effects.base import DISPLACEMENT, Array
+from ngwear.effects.edge_pressure import EdgePressure
 from ngwear.equilibrium.newton import NewtonOptions, Outcome, Report, iterate
 from ngwear.equilibrium.problem import IMBALANCE, Problem
 
@@ -64,6 +65,7 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
             return report
         for term in problem.terms:
             term.attempt(0)
+        fluid = _fluid(problem)
         rounded = _by_rounded_laws(problem, replace(options, damped=True))
     if rounded.converged:
         rounded.iterations += wasted
@@ -72,7 +74,18 @@ def solve(problem: Problem, options: NewtonOptions | None = None) -> Report:
     report.iterations += rounded.iterations
     report.outcome = rounded.outcome if rounded.outcome is Outcome.ROLLED else report.outcome
     problem.state.vec.data = start
+    _put_back(fluid)
     return report
+
+
+def _fluid(problem: Problem) -> list[tuple[EdgePressure, Array]]:
+    """Where the fluids of a problem act: each term, and its values on the mesh edges."""
+    return [(term, term.on_edges) for term in problem.terms if isinstance(term, EdgePressure)]
+
+
+def _put_back(fluid: list[tuple[EdgePressure, Array]]) -> None:
+    for term, values in fluid:
+        term.on_edges = values
 
 
 def _round_off(problem: Problem, relative: float) -> bool:
@@ -124,7 +137,9 @@ def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST
 
     Each step holds it back by springs from its state before, weaker ones while that is easy, none in the end; the first
     ones have the strength ``first`` (pseudo-transient continuation: Kelley & Keyes, *SIAM J. Numer. Anal.* 35 (1998)
-    508). It ends where springs are needed that are ``rises`` times as strong as the weakest ones that have held it.
+    508). The fluid goes along after each step: where it stayed until the part has moved, it would act on a place that
+    the part has left, and push it back. It ends where springs are needed that are ``rises`` times as strong as the
+    weakest ones that have held it.
     """
     place = problem.part(DISPLACEMENT)
     before = problem.state.vec.CreateVector()
@@ -150,6 +165,8 @@ def _move_over(problem: Problem, options: NewtonOptions, *, first: float = FIRST
                 break
             failures, eased, weakest = 0, eased + 1, min(weakest, strength)
             moved = _largest(problem.state.vec, before, place) / problem.body.size
+            for term in problem.terms:
+                term.refresh()
             bound = bound / GROWS**eased if moved > STANDS else 0.0
             if strength < LOOSE or (strength < NEARLY_LOOSE and moved < STANDS):
                 strength = 0.0
@@ -186,9 +203,11 @@ def _or_back(problem: Problem, way: Callable[[Problem], Report]) -> Report:
     """Solve in this way; after a failure the state is put back."""
     before = problem.state.vec.CreateVector()
     before.data = problem.state.vec
+    fluid = _fluid(problem)
     report = way(problem)
     if not report.converged:
         problem.state.vec.data = before
+        _put_back(fluid)
     return report
 
 

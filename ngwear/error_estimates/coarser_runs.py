@@ -12,8 +12,8 @@ run and not in the next. The embedded estimate of a depth's error has a sign. So
 are compared, and that of the run is added to the error by the mesh.
 
 For parts with room to move, an error is at least that by elements of half the edges (``ngwear.loop.halved_elements``).
-They have one coarser run only, and it is waited for as long as the run itself took: on very coarse elements such a part
-may be hard to mount.
+They have one coarser run only, whose difference counts with a factor of safety (``ngwear.results.richardson``). It is
+waited for as long as the run itself took: on very coarse elements such a part may be hard to mount.
 
 With few elements across, the elements on a curved outline are finer than the setting asks for. With a single coarser
 run, its real ratio of element edges in contact is used, instead of two (``edge_ratio``).
@@ -62,7 +62,7 @@ from ngwear.results.quantities_of_interest import (
     element_edge,
 )
 from ngwear.results.recorder import TORN, Recorder, fingerprint
-from ngwear.results.richardson import relative_errors
+from ngwear.results.richardson import HIGHEST, SAFETY, relative_errors
 from ngwear.scene.accuracy import LEAST_ACROSS, Tolerances
 from ngwear.scene.holding import free_directions
 from ngwear.scene.scene import Scene
@@ -139,6 +139,11 @@ def combined_errors(
         As ``summary["error estimates"]`` [-].
     """
     levels = relative_errors(mine, other, coarsest, ratio=ratio if coarsest is None else COARSER)
+    if coarsest is None and free_directions(scene):
+        orders = dict.fromkeys(mine, HIGHEST)
+        levels = {
+            name: SAFETY * error for name, error in relative_errors(mine, other, ratio=ratio, orders=orders).items()
+        }
     out = dict(embedded)
     folded = 0.0 if scene.folding is None else scene.folding.bound
     steps = {name: embedded[name] for name in RUN_COLUMNS if name in embedded}

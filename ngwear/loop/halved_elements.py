@@ -1,14 +1,13 @@
 """Error by the mesh: a cycle is solved again on elements of half the edges, without wear.
 
 Coarser runs may all miss what the elements of none of them resolve, and then agree. The change of peak pressures, loads
-and widths with half the edges does not depend on them. First order is assumed, with the factor of safety of grid
-convergence studies: the error is 2.5 times that change (Roache, J. Fluids Eng. 116 (1994) 405). It is computed before
-the first stroke. Wear then evens the pressures out, and with them their errors: so these count by how much of the
-largest wear per cycle is left at the end. That of the peak pressure counts whole: the peak may move to the end of the
-contact, where wear leaves an edge. What the nodes do not show of the peak at the end is added to it
-(``ContactProfile.missed_at_peak``): before, a node may have lain on the peak by chance. A worn outline has points for
-its own elements only, so that finer ones show peaks that are none; it is used if there is no equilibrium on the finer
-ones before, not even after mounting on them.
+and widths with half the edges does not depend on them. The error is stated as 4.6 times that change: of the order 3/2,
+with the factor of safety of two grids (``ngwear.results.richardson``). It is computed before the first stroke. Wear
+then evens the pressures out, and with them their errors: so these count by how much of the largest wear per cycle is
+left at the end. That of the peak pressure counts whole: the peak may move to the end of the contact, where wear leaves
+an edge. What the nodes do not show of the peak at the end is added to it (``ContactProfile.missed_at_peak``): before, a
+node may have lain on the peak by chance. A worn outline has points for its own elements only, so that finer ones show
+peaks that are none; it is used if there is no equilibrium on the finer ones before, not even after mounting on them.
 
 Only for parts with room to move, which are mounted on coarse elements.
 """
@@ -29,13 +28,13 @@ from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.time_step_error import next_cycle
 from ngwear.results.quantities_of_interest import BY_HALVED, DEPTH, PEAK
-from ngwear.results.richardson import relative_errors
+from ngwear.results.richardson import HIGHEST, SAFETY, relative_errors
 
 BY_DEPTH, BY_PEAK = (f"{name[:-4]} {BY_HALVED}" for name in (DEPTH, PEAK))
 Array = NDArray[np.float64]
 
 NEAR = 3  # a place, and those on both sides of it
-REMAINS = 1.25 * 2.0  # factor of safety, times the error of first order over what halves change, 1 / (1 - 1/2)
+REMAINS = SAFETY / (1.0 - FINER**HIGHEST)  # of the error, over what halves change
 
 
 def add_mesh_errors(state: State) -> list[str]:

@@ -104,6 +104,31 @@ def test_a_part_moves_over_to_the_wall_and_no_spring_is_left():
     assert stage.contacts["wall"].force()[0] > 0.5 * PRESSURE
 
 
+def test_the_fluid_goes_along_with_a_part_that_moves_over_and_is_put_back_if_that_fails(monkeypatch):
+    stage = solved()
+    problem, fluid = stage.problem, stage.fluids["fluid"]
+    where, hold_back = [], attempts._hold_back
+    monkeypatch.setattr(
+        attempts, "_hold_back", lambda held, strength: (where.append(fluid.on_edges), hold_back(held, strength))
+    )
+    left = fluid.on_edges
+    fluid.on_edges = 0.0 * left
+    problem.state.vec[:] = 0.0
+    assert attempts._move_over(problem, NewtonOptions(damped=True)).converged
+    assert not where[0].any()
+    assert where[-1] == pytest.approx(left, abs=0.01), "nobody but the way itself has put it there"
+
+    def fails(problem, options):
+        if options.damped:
+            fluid.on_edges = 0.0 * left
+        return Report(Outcome.STALLED)
+
+    before = fluid.on_edges
+    monkeypatch.setattr(attempts, "iterate", fails)
+    assert not attempts.solve(problem).converged
+    assert fluid.on_edges == pytest.approx(before)
+
+
 def test_a_way_ends_where_much_stronger_springs_are_needed(monkeypatch):
     """Springs of 1/16 hold the part; from then on none does, however stiff: it is not tried up to the stiffest."""
     problem = solved().problem
