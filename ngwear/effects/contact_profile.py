@@ -243,11 +243,9 @@ class ContactProfile:
                 widths[zone.nodes[i - 1]] = min((ends[1] - ends[0]) / HERTZ, zone.width)
         return widths
 
-    def mean_width(self) -> float:
-        """Mean width of the zones, by the load that each bears [mm]; 0 without load."""
-        zones = self.zones()
-        loads = [float(self.load[zone.nodes].sum()) for zone in zones]
-        return sum(load * zone.width for load, zone in zip(loads, zones, strict=True)) / (sum(loads) or 1.0)
+    def loads_and_widths(self) -> list[tuple[float, float]]:
+        """Load [N/mm] and width [mm] of each zone."""
+        return [(float(self.load[zone.nodes].sum()), zone.width) for zone in self.zones()]
 
     def _pieces(self, on: NDArray[np.bool_]) -> list[Zone]:
         """Connected pieces of these nodes."""

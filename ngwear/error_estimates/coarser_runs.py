@@ -138,12 +138,11 @@ def combined_errors(
     dict of str to float
         As ``summary["error estimates"]`` [-].
     """
-    levels = relative_errors(mine, other, coarsest, ratio=ratio if coarsest is None else COARSER)
-    if coarsest is None and free_directions(scene):
-        orders = dict.fromkeys(mine, HIGHEST)
-        levels = {
-            name: SAFETY * error for name, error in relative_errors(mine, other, ratio=ratio, orders=orders).items()
-        }
+    two = coarsest is None and bool(free_directions(scene))  # of a part with room to move there is no third
+    orders = dict.fromkeys(mine, HIGHEST) if two else None
+    levels = relative_errors(mine, other, coarsest, ratio=ratio if coarsest is None else COARSER, orders=orders)
+    if two:
+        levels = {name: SAFETY * error for name, error in levels.items()}
     out = dict(embedded)
     folded = 0.0 if scene.folding is None else scene.folding.bound
     steps = {name: embedded[name] for name in RUN_COLUMNS if name in embedded}

@@ -60,10 +60,8 @@ def with_contact_lengths(stage: Stage, phases: list[Array], across: float) -> Sc
     for phase in phases:
         vector[:] = phase
         for spec in stage.scene.followed:
-            profile = stage.contacts[spec.name].profile()
-            for zone in profile.zones():
-                borne = float(profile.load[zone.nodes].sum())
-                moment, load = moment + borne * zone.width, load + borne
+            for borne, width in stage.contacts[spec.name].profile().loads_and_widths():
+                moment, load = moment + borne * width, load + borne
     vector[:] = keep
     if load == 0.0:
         return stage.scene

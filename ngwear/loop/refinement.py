@@ -167,7 +167,10 @@ def element_edges(
     """
     if across is None or not (widths := profile.bump_widths()).any():
         return np.full(len(profile.t), patch)
-    narrowest = NARROWEST * (min(patch, profile.mean_width() / across) if narrow else patch)
+    narrowest = NARROWEST * patch
+    if narrow:
+        loads, wide = np.transpose(profile.loads_and_widths())
+        narrowest = NARROWEST * min(patch, float(np.average(wide, weights=loads)) / across)
     loaded = np.flatnonzero(widths)
     nearest = np.abs(profile.t[:, None] - profile.t[loaded]).argmin(axis=1)
     least = np.clip(profile.shortest_edges, narrowest, patch) if worn else narrowest

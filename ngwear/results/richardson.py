@@ -21,8 +21,8 @@ grow, the part of the last one that scatter does not explain counts as a trend o
 With scatter alone, the last difference would be 2.2 s, most of it from the coarser run. Two runs give neither order nor
 scatter: first order is assumed unless an order is given. Where two runs are all there are, as for parts with room to
 move, the error is stated with the order 3/2 and the factor of safety of two grids, ``SAFETY`` (Roache, J. Fluids Eng.
-116 (1994) 405). A coarsest run that differs by more than a third has too few
-elements and is not used: on the shipped seal, with two or three elements across the lip, its peak pressure is 57 % off.
+116 (1994) 405). A coarsest run that differs by more than a third has too few elements and is not used: on the shipped
+seal, with two or three elements across the lip, its peak pressure is 57 % off.
 """
 
 from __future__ import annotations

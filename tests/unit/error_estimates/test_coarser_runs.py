@@ -222,6 +222,14 @@ def test_a_companion_counts_for_as_much_coarser_as_its_elements_in_contact_are(f
     assert three[DEPTH] == pytest.approx(0.04), "three tell their order"
 
 
+def test_the_two_runs_of_a_part_with_room_to_move_have_the_factor_of_safety_of_two_grids(ring, sheet):
+    """Grid convergence index of two grids, order 3/2: 3 / (2^1.5 - 1) = 1.641 of their difference (Roache 1994)."""
+    mine, other = ({DEPTH: {"depth": [depth]}, DEPTH_BY_MESH: {"depth": [depth]}} for depth in (1.0, 1.1))
+    moves, held = (combined_errors(scene, {DEPTH: 0.02}, mine, other) for scene in (ring, sheet))
+    assert held[DEPTH] == pytest.approx(0.1 + 0.02)
+    assert moves[DEPTH] == pytest.approx(1.641 * 0.1 + 0.02, rel=1e-3)
+
+
 @pytest.mark.parametrize(("over", "needed"), [(1.01, False), (0.99, True)])
 def test_the_coarsest_is_needed_only_where_the_first_does_not_show_enough(finished, tmp_path, over, needed):
     folder, result = finished

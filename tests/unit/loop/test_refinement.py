@@ -84,7 +84,8 @@ def test_narrow_zones_have_elements_of_their_own():
     assert sizes[[5, 6, 7, 8]] == pytest.approx(widths[1] / 4)
     assert sizes[[9, 10, 11]] == pytest.approx(max(widths[2] / 4, NARROWEST * patch))
     narrow = element_edges(profile, 8 * patch, 4.0, narrow=True)
-    assert narrow[10] == pytest.approx(max(widths[2] / 4, NARROWEST * profile.mean_width() / 4))
+    mean = sum(load * width for load, width in profile.loads_and_widths()) / profile.load.sum()
+    assert narrow[10] == pytest.approx(max(widths[2] / 4, NARROWEST * mean / 4))
     assert element_edges(profile, 8 * patch, 4.0)[10] == pytest.approx(2 * patch)
     assert element_edges(profile, patch, None) == pytest.approx(patch)
     assert element_edges(replace(profile, pressure=np.zeros(12)), patch, 4.0) == pytest.approx(patch)
@@ -181,7 +182,7 @@ def test_a_contact_that_is_wide_in_another_stroke_only_has_elements_by_its_own_w
     stage, phases = state.stage, [p.vector for p in state.phases]
     profile = stage.contacts["roller"].profile()
     (zone,) = profile.zones()
-    assert profile.mean_width() == pytest.approx(zone.width)
+    assert profile.loads_and_widths() == [(pytest.approx(profile.load[zone.nodes].sum()), zone.width)]
     wide = 20 * zone.width / 6.0  # the patch of a stroke in which it is as many times as wide
     stage.scene = with_patch(stage.scene, wide)
     own = contact_sizes(stage, phases, across=6.0)
