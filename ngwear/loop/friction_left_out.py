@@ -3,7 +3,9 @@
 A part that does not bear its friction is solved with a share s of it (``ngwear.loop.bearable_friction``). On other
 elements, or worn, it bears another share. What the rest of the friction would change is extrapolated from what a little
 less of it does: if a quantity changes by d with 0.9 s, it changes by about d (1 - s) / (0.1 s) with all of it. With all
-of the friction another place may be the deepest one.
+of the friction another place may be the deepest one. A part that more friction rolls over is turned by no matter how
+much: a ring resists rolling hardly at all. Each stroke may then wear another place, and the depth is that of the stroke
+that wears most.
 """
 
 from __future__ import annotations
@@ -12,6 +14,7 @@ from copy import copy
 
 from ngwear.loop.bearable_friction import BELOW
 from ngwear.loop.cycle_quantities import read_cycle, wear_per_stroke
+from ngwear.loop.solution_checks import ROLLS
 from ngwear.loop.state import State
 from ngwear.loop.stepper import Stepper
 from ngwear.loop.time_step_error import next_cycle
@@ -48,6 +51,8 @@ def friction_errors(state: State) -> dict[str, float]:
     errors = {name: left_out * change for name, change in changes.items()}
     if DEPTH in errors:
         errors[DEPTH] = max(errors[DEPTH], _deeper(mine, other, left_out))
+        if any(acts[stroke][1] == ROLLS for stroke in lowered):
+            errors[DEPTH] = max(errors[DEPTH], _apart(mine))
     return {f"{name[:-4]} {BY_FRICTION}": error for name, error in errors.items()}
 
 
@@ -64,4 +69,15 @@ def _deeper(mine: State, other: State, left_out: float) -> float:
             more = left_out * (stroke.max() - lower.max())
             if largest > 0:
                 changes.append(float((wear[:, stroke.argmax()].sum() + more) / largest - 1))
+    return max(changes)
+
+
+def _apart(mine: State) -> float:
+    """Relative change of the largest wear per cycle if each stroke wears another place."""
+    changes = [0.0]
+    for spec in (spec for spec in mine.stage.scene.contacts if spec.wears):
+        wear = wear_per_stroke(mine, spec.name)
+        largest = wear.sum(axis=0).max()
+        if largest > 0:
+            changes.append(float(1.0 - wear.max() / largest))
     return max(changes)

@@ -23,7 +23,7 @@ BY_DEPTH, BY_PEAK, BY_FORCE = (f"{name[:-4]} {BY_FRICTION}" for name in (DEPTH, 
 def with_share(state, share):
     """The next cycle of a copy of the state, with this share of the friction in the inward stroke."""
     there = replace(state, stage=state.stage, phases=list(state.phases))
-    there.stage.friction_shares = {"inward": (share, "rolls the part over")} if share < 1 else {}
+    there.stage.friction_shares = {"inward": (share, "creases the surface")} if share < 1 else {}
     return next_cycle(there)
 
 
@@ -44,11 +44,22 @@ def test_the_deepest_place_may_be_another_one_with_all_of_the_friction(sliding, 
     assert friction_left_out._deeper(states[1], states[2], 10.0) == 0.0
 
 
+def test_each_stroke_of_a_part_that_rolls_may_wear_another_place(sliding, monkeypatch):
+    """Both strokes wear the second node, 6 and 5; apart, the depth is that of the first stroke: 6 instead of 11."""
+    wear = np.array([[1.0, 6.0], [2.0, 5.0]])
+    monkeypatch.setattr(friction_left_out, "wear_per_stroke", lambda state, name: wear)
+    apart = 1.0 - 6.0 / 11.0
+    assert friction_left_out._apart(sliding) == pytest.approx(apart)
+    assert friction_errors(sliding)[BY_DEPTH] < apart
+    monkeypatch.setattr(sliding.stage, "friction_shares", {"inward": (SHARE, "rolls the part over")})
+    assert friction_errors(sliding)[BY_DEPTH] >= apart
+
+
 def test_they_are_what_the_rest_of_the_friction_changes(sliding):
     errors = friction_errors(sliding)
     less = read_cycle(sliding)
     changes = relative_errors(less, read_cycle(with_share(sliding, 1.0)))
-    sliding.stage.friction_shares = {"inward": (SHARE, "rolls the part over")}
+    sliding.stage.friction_shares = {"inward": (SHARE, "creases the surface")}
     assert changes[PEAK] > 0.01
     assert errors[BY_FORCE] == pytest.approx(changes[FRICTION], rel=0.1)
     for name, by in ((DEPTH, BY_DEPTH), (PEAK, BY_PEAK)):  # extrapolated to seven times the change
