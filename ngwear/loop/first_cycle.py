@@ -78,7 +78,10 @@ def _first_cycle(state: State, on_mount: Callable[[float], None], lost_elements:
         on_step = recorder(stage.problem, path)
         loads = stage.stroke_loads(stroke)
         options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
-        work, whole = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
+        try:
+            work, whole = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
+        except ConvergenceError as error:
+            raise error.with_words(f"in stroke '{stroke.name}': ") from None
         stage = state.stage
         state.work.add(work)
         needed = i > 0 and work.retries > 0 and stage.has_stick_slip and stage.scene.deactivation is None

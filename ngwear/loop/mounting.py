@@ -84,12 +84,9 @@ def mount(stage: Stage, on_mount: Callable[[float], None], way: Callable[..., Wo
         way = way or partial(advance, problem)
         return way(loads, StepOptions(first=1 / 8), on_step=report)  # grows while it is easy
     except ConvergenceError as error:
-        found = str(error).removesuffix(f"\n{error.report}")
-        advice = (
-            "" if "nothing" in found else "; lower force, interference or friction"
-        )  # not if the part has no support
-        message = f"no equilibrium found under the mounting load{advice}: {found}"
-        raise ConvergenceError(message, error.report, cause=error.cause) from None
+        unheld = "nothing" in str(error)  # the part has no support
+        advice = "" if unheld else "; lower force, interference or friction"
+        raise error.with_words(f"no equilibrium found under the mounting load{advice}: ") from None
 
 
 def refuse_useless(state: State) -> None:

@@ -21,6 +21,10 @@ log = logging.getLogger(__name__)
 
 FAR = 100.0  # sizes of the section: what reaches so far is open
 NEAR = 1e-6  # of the section: a part that is so near to a surface touches it
+NOTHING_STOPS = (
+    "no surface stops the part on its way there: add a wall, or do not press on edges that nothing supports from the "
+    "other side"
+)
 DEEPER = 1e-3  # of the section: what a part beside the wall may overlap more with the surfaces that it touches
 
 
@@ -38,11 +42,20 @@ def place_beside_wall(state: State, error: ConvergenceError | MeshError) -> bool
     """Let the part be mounted beside the wall to which a stroke's loads roll it, if ``error`` says so; False if not.
 
     Where it is drawn in its groove is chance, and rolling there by more than a quarter of a turn is no load step's way.
+
+    Raises
+    ------
+    ConvergenceError
+        The error, if no surface lies on that way.
     """
     stage, stroke = state.stage, state.stage.scene.program.cycle[len(state.phases)]
-    if state.placed != (0.0, 0.0) or not stage.floats or reason(error) != ROLLS:
+    if not isinstance(error, ConvergenceError) or reason(error) != ROLLS:
+        return False
+    if state.placed != (0.0, 0.0) or not stage.floats:
         return False
     way = _way(state, stroke)
+    if way is None:
+        raise error.with_words(after=f"; {NOTHING_STOPS}", cause=NOTHING_STOPS) from None
     if not way.any():
         return False
     state.placed, stage.friction_shares = (float(way[0]), float(way[1])), {}
@@ -62,11 +75,11 @@ def placed(state: State) -> list[Finding]:
     return [Finding("placed", far, sentence)]
 
 
-def _way(state: State, stroke: Stroke) -> Array:
+def _way(state: State, stroke: Stroke) -> Array | None:
     """Translation [mm] of the unloaded part along what drives it in a stroke, until another surface stops it.
 
     What drives it are the stroke's loads that are not in balance in the present state, such as friction and fluid.
-    Zero if nothing stops it, or if the surfaces that it touches where it is drawn are in the way.
+    None if nothing stops it; zero if the surfaces that it touches where it is drawn are in the way.
     """
     stage, still = state.stage, np.zeros(2)
     stage.problem.set_loads(stage.stroke_loads(stroke))
@@ -85,6 +98,8 @@ def _way(state: State, stroke: Stroke) -> Array:
     while ahead and way < FAR * size and room > NEAR * size:  # a gap is a distance: so far the part is free
         room = min(_least_gap(state, contact, way * along) for contact in ahead)
         way += max(room, 0.0)
+    if not ahead or way >= FAR * size:
+        return None
     overlaps = [
         gap - _least_gap(state, contact, way * along)
         for contact, gap in zip(contacts, here, strict=True)
