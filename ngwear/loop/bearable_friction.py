@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -62,8 +62,13 @@ def advance_while_sliding(
     *,
     begin: Array,
     on_step: Callable[[float, Report], None] | None = None,
+    lowers: bool = True,
+    shorter: bool = True,
 ) -> tuple[Work, bool]:
     """As ``advance_on_finer``; where the part does not bear the friction, ``lower_friction``.
+
+    Not if friction rolls it over, unless ``lowers``. ``shorter``: whether shorter steps are tried after one with which
+    it has rolled. They may get there without; but on the way it turns at hardly any load, and needs many.
 
     Returns the work, and whether the whole way was that of ``on_step``.
 
@@ -71,16 +76,19 @@ def advance_while_sliding(
     without, with less friction.
     """
     stage, start, saved = state.stage, Start.of(state.stage), state.saved()
+    bears = not (stage.floats and stage.sliding)
     try:
-        work = advance_on_finer(state, target, options, begin=begin, on_step=on_step)
+        work = advance_on_finer(state, target, replace(options, rolls=shorter), begin=begin, on_step=on_step)
     except (ConvergenceError, MeshError) as error:
-        if not stage.floats or not stage.sliding:
+        if bears:
             raise
         if state.stage is not stage:
             state.restore(saved)
+        if reason(error) == ROLLS and not lowers:
+            raise
         return lower_friction(stage, stroke, target, error, start), False
     whole = True
-    if state.stage is stage and stage.floats and stage.sliding and _is_crushed(stage.problem):
+    if state.stage is stage and not bears and _is_crushed(stage.problem):
         end = Start.of(stage)
         try:
             crushed = ConvergenceError("a crushed element")

@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from ngwear.equilibrium.newton import Outcome
 from ngwear.equilibrium.stepping import StepOptions
 from ngwear.errors import ConvergenceError, MeshError
-from ngwear.loop.bearable_friction import advance_while_sliding
+from ngwear.loop.bearable_friction import advance_while_sliding, reason
 from ngwear.loop.finer_mesh import FINER, advance_on_finer
 from ngwear.loop.mounting import mount, unworn_body
-from ngwear.loop.placing import place_beside_wall, unloaded
+from ngwear.loop.placing import place_as_drawn, place_beside_wall, unloaded
+from ngwear.loop.solution_checks import ROLLS
 from ngwear.loop.stage import Stage
 from ngwear.loop.state import Phase, State
 from ngwear.loop.stroke_report import Forces
@@ -30,18 +31,32 @@ log = logging.getLogger(__name__)
 def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:
     """Mount the unloaded part and solve each stroke of the cycle once, in load steps, each from the one before.
 
-    A part that friction rolls over on its way to a wall is mounted anew, beside that wall. One that cannot be
-    mounted, and does not show why, is mounted once more from the beginning, on elements of half the edges.
+    A part that friction rolls over on its way to a wall is mounted anew, beside that wall. If it rolls there, too, it
+    is solved with less friction; where it is drawn, if there is no equilibrium at the wall. One that cannot be mounted,
+    and does not show why, is mounted once more from the beginning, on elements of half the edges.
 
     Returns the forces on the part in each stroke.
     """
     first = state.work.solves == 0
+    rolled = state.placed != (0.0, 0.0) or bool(state.stage.friction_shares)  # on coarser elements
+    cycle = partial(_first_cycle, state, on_mount, lost_elements)
     try:
-        return _first_cycle(state, on_mount, lost_elements)
+        return cycle(lowers=rolled)
     except (ConvergenceError, MeshError) as error:
-        if not place_beside_wall(state, error) and not (first and _mesh_finer(state, error)):
+        rolls = not rolled and bool(state.stage.floats) and reason(error) == ROLLS
+        if not rolls and not (first and _mesh_finer(state, error)):
             raise
-    return _first_cycle(state, on_mount, lost_elements)
+        said = place_beside_wall(state) if rolls else ""
+    if rolls:
+        try:
+            return cycle(shorter=False)
+        except (ConvergenceError, MeshError) as error:
+            log.info("%s: mounted where it is drawn", error)
+            place_as_drawn(state)
+    try:
+        return cycle()
+    except ConvergenceError as error:
+        raise error.with_words(after=said) from None
 
 
 def _mesh_finer(state: State, error: ConvergenceError | MeshError) -> bool:
@@ -60,8 +75,15 @@ def _mesh_finer(state: State, error: ConvergenceError | MeshError) -> bool:
     return True
 
 
-def _first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: ModuleType | None) -> list[Forces]:
-    """The same from where the part is placed."""
+def _first_cycle(
+    state: State,
+    on_mount: Callable[[float], None],
+    lost_elements: ModuleType | None,
+    *,
+    lowers: bool = True,
+    shorter: bool = True,
+) -> list[Forces]:
+    """The same from where the part is placed; ``lowers`` and ``shorter`` as in ``advance_while_sliding``."""
     forces: list[Forces] = []
     cycle, state.phases = state.stage.scene.program.cycle, []
     begin = unloaded(state)
@@ -79,7 +101,9 @@ def _first_cycle(state: State, on_mount: Callable[[float], None], lost_elements:
         loads = stage.stroke_loads(stroke)
         options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
         try:
-            work, whole = advance_while_sliding(state, stroke.name, loads, options, begin=begin, on_step=on_step)
+            work, whole = advance_while_sliding(
+                state, stroke.name, loads, options, begin=begin, on_step=on_step, lowers=lowers, shorter=shorter
+            )
         except ConvergenceError as error:
             raise error.with_words(f"in stroke '{stroke.name}': ") from None
         stage = state.stage

@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from ngwear.effects.base import DISPLACEMENT
 from ngwear.effects.contact import OutlineContact
-from ngwear.errors import ConvergenceError, MeshError
-from ngwear.loop.bearable_friction import reason
-from ngwear.loop.solution_checks import ROLLS, Finding
+from ngwear.loop.solution_checks import Finding
 from ngwear.loop.state import State
 from ngwear.scene.program import Stroke
 
@@ -22,7 +20,7 @@ log = logging.getLogger(__name__)
 FAR = 100.0  # sizes of the section: what reaches so far is open
 NEAR = 1e-6  # of the section: a part that is so near to a surface touches it
 NOTHING_STOPS = (
-    "no surface stops the part on its way there: add a wall, or do not press on edges that nothing supports from the "
+    "; no surface stops the part on its way there: add a wall, or do not press on edges that nothing supports from the "
     "other side"
 )
 DEEPER = 1e-3  # of the section: what a part beside the wall may overlap more with the surfaces that it touches
@@ -38,29 +36,25 @@ def unloaded(state: State) -> Array:
     return np.array(vector)
 
 
-def place_beside_wall(state: State, error: ConvergenceError | MeshError) -> bool:
-    """Let the part be mounted beside the wall to which a stroke's loads roll it, if ``error`` says so; False if not.
+def place_beside_wall(state: State) -> str:
+    """Let the part be mounted beside the wall to which the loads of the stroke that failed roll it, with all friction.
 
     Where it is drawn in its groove is chance, and rolling there by more than a quarter of a turn is no load step's way.
-
-    Raises
-    ------
-    ConvergenceError
-        The error, if no surface lies on that way.
+    It stays where it is if it touches that wall already. Returns words for an error if no surface lies on that way.
     """
-    stage, stroke = state.stage, state.stage.scene.program.cycle[len(state.phases)]
-    if not isinstance(error, ConvergenceError) or reason(error) != ROLLS:
-        return False
-    if state.placed != (0.0, 0.0) or not stage.floats:
-        return False
-    way = _way(state, stroke)
+    way = _way(state, state.stage.scene.program.cycle[len(state.phases)])
+    place_as_drawn(state)
     if way is None:
-        raise error.with_words(after=f"; {NOTHING_STOPS}", cause=NOTHING_STOPS) from None
-    if not way.any():
-        return False
-    state.placed, stage.friction_shares = (float(way[0]), float(way[1])), {}
-    log.info("the part rolls over: it is mounted beside the wall, %s mm from where it is drawn", state.placed)
-    return True
+        return NOTHING_STOPS
+    if way.any():
+        state.placed = (float(way[0]), float(way[1]))
+        log.info("the part rolls over: it is mounted beside the wall, %s mm from where it is drawn", state.placed)
+    return ""
+
+
+def place_as_drawn(state: State) -> None:
+    """Let the part be mounted where it is drawn, with all friction."""
+    state.placed, state.stage.friction_shares = (0.0, 0.0), {}
 
 
 def placed(state: State) -> list[Finding]:
@@ -93,13 +87,14 @@ def _way(state: State, stroke: Stroke) -> Array | None:
     along /= np.linalg.norm(along)
     size, contacts = stage.body.size, list(stage.contacts.values())
     here = [_least_gap(state, contact, still) for contact in contacts]
+    beyond = [_least_gap(state, contact, FAR * size * along) for contact in contacts]
+    if not any(there < -size for there in beyond):
+        return None
     ahead = [contact for contact, gap in zip(contacts, here, strict=True) if gap > NEAR * size]
     way, room = 0.0, np.inf
     while ahead and way < FAR * size and room > NEAR * size:  # a gap is a distance: so far the part is free
         room = min(_least_gap(state, contact, way * along) for contact in ahead)
         way += max(room, 0.0)
-    if not ahead or way >= FAR * size:
-        return None
     overlaps = [
         gap - _least_gap(state, contact, way * along)
         for contact, gap in zip(contacts, here, strict=True)

@@ -8,7 +8,9 @@ import pytest
 import ngwear as nw
 from ngwear.equilibrium.newton import Outcome, Report
 from ngwear.errors import ConvergenceError
+from ngwear.loop import first_cycle as module
 from ngwear.loop.element_sizes import coarse_for_mounting, with_mounting_lengths
+from ngwear.loop.first_cycle import first_cycle
 from ngwear.loop.mounting import mount, unworn_body
 from ngwear.loop.placing import place_beside_wall, placed, unloaded
 from ngwear.loop.stage import Stage
@@ -70,7 +72,7 @@ def state(mounted):
 
 def test_it_is_placed_where_it_touches_the_wall_that_friction_drives_it_to(state):
     state.stage.friction_shares["out"] = (0.5, "rolls the part over")
-    assert place_beside_wall(state, ROLLED)
+    assert place_beside_wall(state) == ""
     assert state.placed == (pytest.approx(-ROOM, rel=1e-4), 0.0)
     assert state.stage.friction_shares == {}
     (told,) = placed(state)
@@ -86,14 +88,57 @@ def test_it_begins_there_without_a_load(state):
     assert state.stage.problem.jacobians() == pytest.approx(1.0, abs=1e-12)
 
 
-def test_it_is_placed_once_and_for_rolling_only(state):
-    assert not place_beside_wall(state, ConvergenceError("none", Report(Outcome.CREASED)))
+@pytest.fixture
+def ways(state, monkeypatch):
+    """Where and how the first cycle is tried, and the errors of the first tries."""
+    tried, errors = [], []
+
+    def cycle(state, *args, **how):
+        tried.append((state.placed != (0.0, 0.0), how))
+        if errors:
+            raise errors.pop(0)
+        return []
+
+    monkeypatch.setattr(module, "_first_cycle", cycle)
+    state.work.solves = 1
+    yield tried, errors
+    state.work.solves = 0
+
+
+def test_one_that_rolls_is_placed_before_its_friction_is_lowered(state, ways):
+    tried, errors = ways
+    errors += [ROLLED]
+    first_cycle(state, lambda fraction: None, None)
+    assert tried == [(False, {"lowers": False}), (True, {"shorter": False})]
+
+
+def test_one_that_finds_no_state_at_the_wall_stays_as_drawn(state, ways):
+    tried, errors = ways
+    errors += [ROLLED, ConvergenceError("none")]
+    first_cycle(state, lambda fraction: None, None)
+    assert tried[2:] == [(False, {})]
     assert placed(state) == []
-    state.placed = (-ROOM, 0.0)
-    assert not place_beside_wall(state, ROLLED)
 
 
-def test_without_a_wall_that_way_the_error_says_so(state):
+def test_one_that_has_rolled_on_coarser_elements_is_not_placed_again(state, ways):
+    tried, _ = ways
+    state.stage.friction_shares["out"] = (0.5, "rolls the part over")
+    first_cycle(state, lambda fraction: None, None)
+    assert tried == [(False, {"lowers": True})]
+    state.stage.friction_shares.clear()
+
+
+def test_it_is_placed_for_rolling_only(state, ways):
+    tried, errors = ways
+    errors += [ConvergenceError("none", Report(Outcome.CREASED))]
+    with pytest.raises(ConvergenceError, match="none"):
+        first_cycle(state, lambda fraction: None, None)
+    assert len(tried) == 1
+
+
+def test_without_a_wall_that_way_the_error_says_so(state, ways):
+    tried, errors = ways
+    errors += 3 * [ROLLED]
     scene = state.stage.scene
     walls = [contact for contact in state.stage.contacts if contact != "left"]
     there = Stage(replace(scene, contacts=[c for c in scene.contacts if c.name in walls]), state.stage.body)
@@ -103,7 +148,8 @@ def test_without_a_wall_that_way_the_error_says_so(state):
         mine.fields[pressure].vec.data = other.fields[pressure].vec
     mine.fields["displacement"].vec.data = other.fields["displacement"].vec
     with pytest.raises(ConvergenceError, match="no equilibrium; no surface stops the part on its way there"):
-        place_beside_wall(replace(state, stage=there), ROLLED)
+        first_cycle(replace(state, stage=there), lambda fraction: None, None)
+    assert [placed for placed, _ in tried] == [False, False, False]
 
 
 @pytest.mark.slow
