@@ -126,10 +126,10 @@ class ConvergenceError(NgwearError):
         said = report is None or message.endswith(f"\n{report}")
         super().__init__(message if said else f"{message}\n{report}")
 
-    def with_words(self, before: str = "", after: str = "", *, cause: str = "") -> ConvergenceError:
-        """The same error with words before and after its sentences, of which the report stays the last, or a cause."""
+    def with_words(self, before: str = "", after: str = "") -> ConvergenceError:
+        """The same error with words before and after its sentences; those of the report stay at the end."""
         found = str(self).removesuffix(f"\n{self.report}")
-        return ConvergenceError(f"{before}{found}{after}", self.report, cause=cause or self.cause)
+        return ConvergenceError(f"{before}{found}{after}", self.report, cause=self.cause)
 
 
 class ResultError(NgwearError):

@@ -46,7 +46,7 @@ def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: 
         rolls = not rolled and bool(state.stage.floats) and reason(error) == ROLLS
         if not rolls and not (first and _mesh_finer(state, error)):
             raise
-        said = place_beside_wall(state) if rolls else ""
+        nothing_stops = place_beside_wall(state) if rolls else ""
     if rolls:
         try:
             return cycle(shorter=False)
@@ -56,7 +56,7 @@ def first_cycle(state: State, on_mount: Callable[[float], None], lost_elements: 
     try:
         return cycle()
     except ConvergenceError as error:
-        raise error.with_words(after=said) from None
+        raise error.with_words(after=nothing_stops) from None
 
 
 def _mesh_finer(state: State, error: ConvergenceError | MeshError) -> bool:

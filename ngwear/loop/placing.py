@@ -19,11 +19,11 @@ log = logging.getLogger(__name__)
 
 FAR = 100.0  # sizes of the section: what reaches so far is open
 NEAR = 1e-6  # of the section: a part that is so near to a surface touches it
+DEEPER = 1e-3  # of the section: what a part beside the wall may overlap more with the surfaces that it touches
 NOTHING_STOPS = (
     "; no surface stops the part on its way there: add a wall, or do not press on edges that nothing supports from the "
     "other side"
 )
-DEEPER = 1e-3  # of the section: what a part beside the wall may overlap more with the surfaces that it touches
 
 
 def unloaded(state: State) -> Array:

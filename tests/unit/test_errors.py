@@ -10,7 +10,6 @@ def test_words_stand_around_the_sentences_and_the_report_stays_at_the_end():
     told = error.with_words("in stroke 'inward': ", "; add a wall")
     assert str(told) == f"in stroke 'inward': no equilibrium; add a wall\n{report}"
     assert (told.report, told.cause) == (report, "it rolls")
-    assert told.with_words(cause="nothing stops it").cause == "nothing stops it"
 
 
 def test_without_a_report_there_is_none_at_the_end():
