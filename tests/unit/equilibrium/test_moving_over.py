@@ -11,7 +11,7 @@ from ngwear.errors import ConvergenceError
 LOAD = "fluid pressure [MPa]"
 
 
-def walk(stage, monkeypatch, fails):
+def walk(stage, monkeypatch, fails, **options):
     """Fractions reached on the way to twice the pressure; ``fails(share, moves)`` says which solves do not converge."""
     problem, tried, reached = stage.problem, [], []
     stage.begin(problem.state.vec.FV().NumPy().copy())
@@ -24,7 +24,7 @@ def walk(stage, monkeypatch, fails):
         return Report(Outcome.STALLED) if fails(share, options.moves) else solve(problem, options)
 
     monkeypatch.setattr(stepping, "solve", tells)
-    advance(problem, {LOAD: 2 * first}, StepOptions(), on_step=lambda fraction, report: reached.append(fraction))
+    advance(problem, {LOAD: 2 * first}, StepOptions(**options), on_step=lambda share, report: reached.append(share))
     return tried, reached
 
 
@@ -54,6 +54,15 @@ def test_a_part_that_rolls_over_under_all_loads_may_still_reach_them_in_steps(mo
     tried, reached = walk(stage, monkeypatch, lambda share, moves: fails(share, moves) and not moves)
     assert sum(moves for _, moves in tried) == 1
     assert reached[-1] == 1.0
+
+
+def test_it_is_not_tried_in_shorter_steps_if_it_has_rolled_and_none_are_asked_for(monkeypatch):
+    stage, solve, tried = solved(), stepping.solve, []
+    monkeypatch.setattr(stepping, "solve", lambda p, o: Report(Outcome.ROLLED) if o.moves else solve(p, o))
+    with pytest.raises(ConvergenceError) as caught:
+        walk(stage, monkeypatch, lambda share, moves: tried.append(share) or not moves, rolls=False)
+    assert caught.value.report.outcome is Outcome.ROLLED
+    assert tried == pytest.approx([1.0, 0.5, 0.25, SHORT, 1.0])
 
 
 def test_a_held_part_does_not_move_over(monkeypatch):
