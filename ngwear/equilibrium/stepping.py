@@ -33,8 +33,9 @@ class StepOptions:
         Iterations up to which the next step grows.
     leaps : bool
         Whether a part with room to move may move over to another equilibrium.
-    rolls : bool
-        Whether shorter steps are tried after the part has rolled over on its way there.
+    shorter : bool
+        Whether shorter steps are tried after the part has rolled over on its way there: they may get there without, but
+        it turns at hardly any load then, and needs many.
     max_updates : int
         Solves allowed for what terms fix within a solve (the fluid front) to settle.
     """
@@ -44,7 +45,7 @@ class StepOptions:
     largest: float = 1.0
     easy: int = 8  # a third of the most iterations
     leaps: bool = True
-    rolls: bool = True
+    shorter: bool = True
     max_updates: int = 12  # a front that still moves is left then, within an edge of its place
     newton: NewtonOptions = field(default_factory=NewtonOptions)
 
@@ -157,8 +158,7 @@ def advance(
             if leaps:
                 continue
             step /= 2
-            # In steps it may get there without.
-            beyond = report.outcome is Outcome.ROLLED and not (leapt and options.rolls)
+            beyond = report.outcome is Outcome.ROLLED and not (leapt and options.shorter)
             if has_room(problem):
                 beyond |= has_collapsed(problem) or (step < SHORTEST and creases(problem))
             if step < options.smallest or beyond:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -63,12 +63,10 @@ def advance_while_sliding(
     begin: Array,
     on_step: Callable[[float, Report], None] | None = None,
     lowers: bool = True,
-    shorter: bool = True,
 ) -> tuple[Work, bool]:
     """As ``advance_on_finer``; where the part does not bear the friction, ``lower_friction``.
 
-    Not if friction rolls it over, unless ``lowers``. ``shorter``: whether shorter steps are tried after one with which
-    it has rolled. They may get there without; but on the way it turns at hardly any load, and needs many.
+    Not if friction rolls it over, unless ``lowers``.
 
     Returns the work, and whether the whole way was that of ``on_step``.
 
@@ -78,7 +76,7 @@ def advance_while_sliding(
     stage, start, saved = state.stage, Start.of(state.stage), state.saved()
     bears = not (stage.floats and stage.sliding)
     try:
-        work = advance_on_finer(state, target, replace(options, rolls=shorter), begin=begin, on_step=on_step)
+        work = advance_on_finer(state, target, options, begin=begin, on_step=on_step)
     except (ConvergenceError, MeshError) as error:
         if bears:
             raise

@@ -83,7 +83,7 @@ def _first_cycle(
     lowers: bool = True,
     shorter: bool = True,
 ) -> list[Forces]:
-    """The same from where the part is placed; ``lowers`` and ``shorter`` as in ``advance_while_sliding``."""
+    """The same from where the part is placed; ``lowers`` as in ``advance_while_sliding``."""
     forces: list[Forces] = []
     cycle, state.phases = state.stage.scene.program.cycle, []
     begin = unloaded(state)
@@ -99,10 +99,10 @@ def _first_cycle(
         path: list[tuple[float, Array]] = []
         on_step = recorder(stage.problem, path)
         loads = stage.stroke_loads(stroke)
-        options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5))
+        options = steps_for(state, i, StepOptions(first=MOVING if stage.floats else 0.5, shorter=shorter))
         try:
             work, whole = advance_while_sliding(
-                state, stroke.name, loads, options, begin=begin, on_step=on_step, lowers=lowers, shorter=shorter
+                state, stroke.name, loads, options, begin=begin, on_step=on_step, lowers=lowers
             )
         except ConvergenceError as error:
             raise error.with_words(f"in stroke '{stroke.name}': ") from None

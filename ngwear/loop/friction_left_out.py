@@ -3,9 +3,9 @@
 A part that does not bear its friction is solved with a share s of it (``ngwear.loop.bearable_friction``). On other
 elements, or worn, it bears another share. What the rest of the friction would change is extrapolated from what a little
 less of it does: if a quantity changes by d with 0.9 s, it changes by about d (1 - s) / (0.1 s) with all of it. With all
-of the friction another place may be the deepest one. A part that more friction rolls over is turned by no matter how
-much: a ring resists rolling hardly at all. Each stroke may then wear another place, and the depth is that of the stroke
-that wears most.
+of the friction another place may be the deepest one. How far it would turn a part that it rolls over is not known: a
+ring hardly resists rolling. Each stroke may then wear another place, and the depth is that of the stroke that wears
+most.
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ def test_it_is_not_tried_in_shorter_steps_if_it_has_rolled_and_none_are_asked_fo
     stage, solve, tried = solved(), stepping.solve, []
     monkeypatch.setattr(stepping, "solve", lambda p, o: Report(Outcome.ROLLED) if o.moves else solve(p, o))
     with pytest.raises(ConvergenceError) as caught:
-        walk(stage, monkeypatch, lambda share, moves: tried.append(share) or not moves, rolls=False)
+        walk(stage, monkeypatch, lambda share, moves: tried.append(share) or not moves, shorter=False)
     assert caught.value.report.outcome is Outcome.ROLLED
     assert tried == pytest.approx([1.0, 0.5, 0.25, SHORT, 1.0])
 
